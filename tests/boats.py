@@ -112,3 +112,38 @@ def planar(
 def push(X: float, N: float) -> dict[str, float]:
     """Commands with which `planar` is pushed ahead with X [N] and turned with N [N m]."""
     return {"thrust_port_N": X / 2 + N, "thrust_starboard_N": X / 2 - N}
+
+
+MEASURED_WAVE = """
+about = "a box in a measured wave"
+source = "none"
+freedoms = ["sway", "heave", "roll"]
+length = 0.6
+beam = 0.4
+draught = 0.2
+body = { mass = 48.0, roll_inertia = 1.0, yaw_inertia = 1.4 }
+
+[measured]
+wave_m = {}
+
+[[effect]]
+use = "wave_excitation"
+on = { elevation = "wave_m" }
+roll_elevation = -30.0
+roll_rate = -10.0
+sway_rate = -200.0
+
+[[effect]]
+use = "wave_drift"
+on = { elevation = "wave_m" }
+sway = -1400.0
+"""
+BOX_HULL = """<mujoco model="box"><worldbody><body name="hull">
+<geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
+
+
+def box_in_measured_wave(folder: Path) -> Vessel:
+    """Write a box on which a recorded wave acts to a folder, and load it."""
+    (folder / "hull.xml").write_text(BOX_HULL)
+    (folder / "vessel.toml").write_text(MEASURED_WAVE)
+    return vessel.load_vessel(str(folder))

@@ -20,6 +20,7 @@ from boatsim.diagnosis.loading import Loaded
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, TimedCommands
+from tests.boats import box_in_measured_wave
 
 INERTIA, MOMENT = 0.147, 3.0  # [kg m^2], [N m] of the vessel file
 GAIN, FRICTION, DAMPING = 0.8, 0.15, 0.013  # of the truth: [-], [N m], [N m s]
@@ -131,31 +132,8 @@ def test_stretches_at_rest_are_found_and_cut_out() -> None:
     assert piece.name.startswith("rig (") and 4.5 < piece.t[0] < 5.2 and 11.8 < piece.t[-1] < 12.5
 
 
-BOX = """
-about = "a box in a measured wave"
-source = "none"
-freedoms = ["sway", "heave", "roll"]
-length = 0.6
-beam = 0.4
-draught = 0.2
-body = { mass = 48.0, roll_inertia = 1.0, yaw_inertia = 1.4 }
-
-[measured]
-wave_m = {}
-
-[[effect]]
-use = "wave_excitation"
-on = { elevation = "wave_m" }
-sway_rate = -200.0
-"""
-HULL = """<mujoco model="box"><worldbody><body name="hull">
-<geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
-
-
 def test_a_body_that_follows_a_small_wave_is_not_at_rest(tmp_path: Path) -> None:
-    (tmp_path / "hull.xml").write_text(HULL)
-    (tmp_path / "vessel.toml").write_text(BOX)
-    box, t = vessel.load_vessel(str(tmp_path)), np.arange(0.0, 40.0, 0.05)
+    box, t = box_in_measured_wave(tmp_path), np.arange(0.0, 40.0, 0.05)
     wave = np.where(t > 15.0, 0.01 * np.sin(6.0 * t), 1e-4 * np.cos(t))
     still = np.zeros(len(t))
     heave = np.where(t > 15.0, 1e-4 * np.sin(6.0 * t), 0.0)

@@ -24,6 +24,7 @@ from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
+from tests.boats import box_in_measured_wave
 
 pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 
@@ -150,40 +151,10 @@ def test_an_array_of_another_type_is_refused() -> None:
         code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
 
 
-MEASURED_WAVE = """
-about = "a box in a measured wave"
-source = "none"
-freedoms = ["sway", "heave", "roll"]
-length = 0.6
-beam = 0.4
-draught = 0.2
-body = { mass = 48.0, roll_inertia = 1.0, yaw_inertia = 1.4 }
-
-[measured]
-wave_m = {}
-
-[[effect]]
-use = "wave_excitation"
-on = { elevation = "wave_m" }
-roll_elevation = -30.0
-roll_rate = -10.0
-sway_rate = -200.0
-
-[[effect]]
-use = "wave_drift"
-on = { elevation = "wave_m" }
-sway = -1400.0
-"""
-HULL = """<mujoco model="box"><worldbody><body name="hull">
-<geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
-
-
 def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
     tmp_path: Path,
 ) -> None:
-    (tmp_path / "hull.xml").write_text(HULL)
-    (tmp_path / "vessel.toml").write_text(MEASURED_WAVE)
-    program = Program(load_vessel(str(tmp_path)))
+    program = Program(box_in_measured_wave(tmp_path))
     assert isinstance(program.functions, NativeProgram)
     vessel = program.vessel
     wave = vessel.inputs.index("wave_m")
