@@ -120,7 +120,8 @@ def _response(problem: Problem, fit: Fit, mapped: MappedRecording, scale: Array)
     means = mapped.smooth(values, on, fit.levels).means
     commanded = _commanded(mapped)[:, axes] / scale
     needed = commanded + means[:, 2 * nq : 3 * nq][:, axes] / scale
-    speed = np.sum(means[:, nq : nq + 2] ** 2, axis=1)
+    horizontal = np.isin(problem.program.vessel.dof, ("surge", "sway"))
+    speed = np.sum(means[:, nq : 2 * nq][:, horizontal] ** 2, axis=1)
     products, squares = np.cumsum(needed * commanded, axis=1), np.cumsum(commanded**2, axis=1)
     columns = np.column_stack([products, squares, speed])
     mean = _running_mean(mapped.times, columns, _window(problem))
