@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -105,7 +105,7 @@ def _usual_forces(recordings: Sequence[MappedRecording]) -> Array:
 
 def _axes(mapped: MappedRecording) -> list[int]:
     """Places of surge and yaw among the forces."""
-    dof = list(mapped.program.vessel.dof)
+    dof = dof_in_state_order(mapped.program.vessel)
     return [dof.index("surge"), dof.index("yaw")]
 
 
@@ -120,7 +120,7 @@ def _response(problem: Problem, fit: Fit, mapped: MappedRecording, scale: Array)
     means = mapped.smooth(values, on, fit.levels).means
     commanded = _commanded(mapped)[:, axes] / scale
     needed = commanded + means[:, 2 * nq : 3 * nq][:, axes] / scale
-    horizontal = np.isin(problem.program.vessel.dof, ("surge", "sway"))
+    horizontal = np.isin(dof_in_state_order(problem.program.vessel), ("surge", "sway"))
     speed = np.sum(means[:, nq : 2 * nq][:, horizontal] ** 2, axis=1)
     products, squares = np.cumsum(needed * commanded, axis=1), np.cumsum(commanded**2, axis=1)
     columns = np.column_stack([products, squares, speed])
