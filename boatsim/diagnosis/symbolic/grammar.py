@@ -207,21 +207,29 @@ def _thresholds(speeds: Mapping[str, Array], config: DescribeConfig) -> Iterator
 def _ripples(
     vessel: Vessel, recordings: Recordings, config: DescribeConfig
 ) -> Iterator[tuple[str, float, float]]:
-    """Yield patterns fixed to the earth: factor, wavelength [m], position of a crest [m]."""
+    """Yield patterns fixed to the earth: factor, wavelength [m], position of a crest [m].
+
+    The longest wavelength is the extent of the longest track: a longer pattern would only give each
+    recording its own constant force.
+    """
     for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
-        columns = []
+        extents = []
         for r in recordings:
             if signal in r.signals:
-                columns.append(r.measured[:, r.signals.index(signal)])
-        if axis not in vessel.dof or not columns:
+                extents.append(_extent(r.measured[:, r.signals.index(signal)]))
+        if axis not in vessel.dof or not extents:
             continue
-        positions = np.concatenate(columns)
-        extent = float(np.nanmax(positions) - np.nanmin(positions))
-        shortest = config.shortest_wavelength * vessel.length
+        extent, shortest = max(extents), config.shortest_wavelength * vessel.length
         if extent > 2.0 * shortest:
             for wavelength in np.geomspace(shortest, extent, config.wavelengths).tolist():
                 yield f"ripple_{place}", wavelength, 0.0
                 yield f"ripple_{place}", wavelength, QUARTER * wavelength
+
+
+def _extent(positions: Array) -> float:
+    """Distance [m] between the extremes of positions (N,), 0 if none was recorded."""
+    known = positions[np.isfinite(positions)]
+    return float(np.ptp(known)) if len(known) else 0.0
 
 
 def _lasting(recordings: Recordings, config: DescribeConfig) -> Iterator[Course]:

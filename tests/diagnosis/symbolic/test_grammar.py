@@ -10,13 +10,15 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from pushed_boat import BOAT, Late, Missing, sail
+from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 
 from boatsim.diagnosis.candidates import diagnosis_program, library_for
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
 from boatsim.diagnosis.report import patched_vessel
+from boatsim.diagnosis.symbolic import grammar
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel
 from boatsim.physics.base import Array, Motion, Wrench, motion
@@ -24,7 +26,8 @@ from boatsim.physics.described_laws import EVER
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.effects.thruster import Thruster
-from boatsim.recordings.table import Recording
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Notes, Recording
 
 ACTS = np.array([0.8, -0.4, 0.3, 0.1, cos(0.3), sin(0.3), cos(0.1), sin(0.1)])  # of the trial boat
 AT = motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
@@ -141,6 +144,23 @@ def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
 
 
 # ---- unknown causes, on recordings of an integrator that shares no code with the tool
+
+
+def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> None:
+    """Tracks far from each other: such a pattern would be a constant of each recording."""
+    program = Program(BOAT, library_for(BOAT).compiled)
+    t, recordings = np.arange(30.0), []
+    for name, start, extent in (("near", 0.0, 60.0), ("far", 9000.0, 90.0)):
+        signals = {"x_m": start + extent * t / 29.0, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
+        commands = dict.fromkeys(COMMANDS, 0.0 * t)
+        recording = Recording(name, t, signals | commands, Notes(vessel="trial_boat"))
+        recordings.append(map_recording(recording, program))
+    wavelengths = []
+    for term in grammar.terms(BOAT, recordings, {}, (), DEFAULT.describe):
+        if term.of == ("ripple_north",):
+            wavelengths.append(term.wavelength)
+        assert term.of != ("ripple_east",)
+    assert max(wavelengths) == pytest.approx(90.0)
 
 
 def swinging(t: float, y: Array, command: Array) -> Array:
