@@ -43,8 +43,8 @@ def next_experiment(f: Findings) -> Iterator[Block]:
         return
     if is_optional(f):
         yield Text(
-            "This is optional: the recordings leave little doubt about the answer. The manoeuvre "
-            "below would confirm it."
+            "These recordings are enough for the answer above. The manoeuvre below is optional: it "
+            "would test the answer against its closest rival."
         )
     scenario = wanted["scenario"]
     rivals = []
@@ -82,15 +82,18 @@ def is_optional(f: Findings) -> bool:
     """Return whether the next experiment would only confirm an answer that is sure without it.
 
     An answer is sure if each identified effect is stated without the word probably, has no
-    look-alike, and no other effect and no force remain in doubt.
+    look-alike, and no other effect and no force remain in doubt. The experiment must test it.
 
     Args:
         f: Findings of a diagnosis.
     """
-    if f.answer["verdict"] != "named" or f.answer.get("also_possible"):
+    wanted, effects = f.answer["next_experiment"], f.answer["effects"]
+    if not wanted or f.answer["verdict"] != "named" or f.answer.get("also_possible"):
+        return False
+    if not {effect["name"] for effect in effects} & set(wanted["separates"]):
         return False
     sure = f.setting("decide.sure_probability")
-    return all(effect["probability"] >= sure for effect in f.answer["effects"])
+    return all(effect["probability"] >= sure for effect in effects)
 
 
 def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:
