@@ -43,8 +43,8 @@ def next_experiment(f: Findings) -> Iterator[Block]:
         return
     if is_optional(f):
         yield Text(
-            "These recordings are enough for the answer above. The manoeuvre below is optional: it "
-            "would test the answer against its closest rival."
+            "This is optional: the recordings already support the answer above with the "
+            "probability stated there. The manoeuvre would test it against its closest rival."
         )
     scenario = wanted["scenario"]
     rivals = []
