@@ -122,7 +122,7 @@ def _text(answer: Mapping[str, Any]) -> list[str]:
     degrees = [float(np.degrees(value)) for value in rms.values()]
     errors = dict(zip(rms, format_in_one_unit(degrees, "°"), strict=True))
     x, y = PLOT + 26, 38
-    lines = [f'<text class="head" x="{x}" y="{y}">A real log, held out: pendulum on a motor</text>']
+    lines = [f'<text class="head" x="{x}" y="{y}">A real log, held out: a pendulum</text>']
     for look in LOOKS:
         y += LINE + 1
         words = NAMES[look]

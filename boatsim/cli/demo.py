@@ -8,10 +8,13 @@ from pathlib import Path
 from pydantic import Field
 
 from boatsim.cli.exits import Exit, print_lines, print_note
+from boatsim.cli.programs import typed_program
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.report.brief import brief_lines
+from boatsim.diagnosis.report.experiment_section import is_optional
+from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.base import Effect
@@ -25,6 +28,7 @@ from boatsim.view.formatting import join_words, sentence_in_per_cent
 from boatsim.view.viewer import has_display
 
 FILE = "demo.toml"  # in the folder of the shipped scenarios
+MANOEUVRE = "turning_circle"  # simulated with the corrected model in the command that is printed
 RECORDINGS = "recordings"  # folder of the simulated recordings, in the output folder
 
 
@@ -32,8 +36,8 @@ class DemoFile(Table):
     """Content of demo.toml: which scenarios the demonstration simulates and diagnoses."""
 
     about: str
-    fit: list[str] = Field(min_length=1)
-    hold_out: list[str] = Field(min_length=1)
+    fit: dict[str, str] = Field(min_length=1)  # scenario -> what the boat does in it
+    hold_out: dict[str, str] = Field(min_length=1)
     seed: int = Field(default=0, ge=0)
     horizon: float | None = Field(default=None, gt=0)  # [s]
 
@@ -54,20 +58,23 @@ def run_demo(out: Path, browser: bool) -> int:
     """
     path = content_root() / "scenarios" / FILE
     demo = validate_table(DemoFile, read_toml(path), FILE)
-    names = [*demo.fit, *demo.hold_out]
+    recorded = {**demo.fit, **demo.hold_out}
     _print_now(
         [
             f"The boat: {demo.about}.",
-            f"1. Simulating {len(names)} recordings. The first time, the boat is compiled before:",
+            f"1. Simulating {len(recorded)} recordings (the first time, the boat's program is "
+            "compiled first):",
         ]
     )
-    loaded = [scenarios.load(name) for name in names]
-    recordings = [_simulate(scenario, out, demo.seed) for scenario in loaded]
+    loaded = [scenarios.load(name) for name in recorded]
+    recordings = list[Path]()
+    for scenario, words in zip(loaded, recorded.values(), strict=True):
+        recordings.append(_simulate(scenario, words, out, demo.seed))
     fitted = recordings[: len(demo.fit)]
     _print_now(
         [
-            f"2. Comparing them with the boat's model: {len(fitted)} are fitted, "
-            f"{len(demo.hold_out)} are held out to test the answer."
+            f"2. Comparing them with the boat's model: the first {len(fitted)} are fitted, the "
+            f"other {len(demo.hold_out)} are held out to test the answer."
         ]
     )
     with report_stages() as report:
@@ -75,7 +82,7 @@ def run_demo(out: Path, browser: bool) -> int:
     _print_now(["3. Writing the report."])
     write_diagnosis(found, out)
     _print_now(["", *brief_lines(found.findings), *_truth_lines(loaded, found), ""])
-    _print_now(_next_lines(out))
+    _print_now(_next_lines(out, found.findings))
     if browser:
         _open(out / "report.html")
     return Exit.MET
@@ -87,11 +94,11 @@ def _print_now(lines: Sequence[str]) -> None:
     sys.stdout.flush()
 
 
-def _simulate(scenario: Scenario, out: Path, seed: int) -> Path:
+def _simulate(scenario: Scenario, words: str, out: Path, seed: int) -> Path:
     """Run a scenario and return the recording that an owner's camera would make."""
     folder = out / RECORDINGS / scenario.name.rpartition("/")[2]
     done = run_into_folder(folder, scenario, RunOptions(seed=seed))
-    _print_now([f"   {scenario.name}: {done.run.recording.t[-1]:.1f} s long"])
+    _print_now([f"   {words}: {done.run.recording.t[-1]:.1f} s long ({scenario.name})"])
     return folder / f"{CAMERA}.csv"
 
 
@@ -124,12 +131,21 @@ def _in_words(effect: Effect) -> str:
     return join_words(ratios or [f"{type(effect).words} ({', '.join(values)})"])
 
 
-def _next_lines(out: Path) -> list[str]:
-    return [
+def _next_lines(out: Path, findings: Findings) -> list[str]:
+    """Return the files of the result, and the commands that follow."""
+    boatsim, model = typed_program("boatsim"), out / "patched.toml"
+    lines = [
         f"Report: {out / 'report.html'}",
-        f"Corrected model: {out / 'patched.toml'}",
-        f"In 3D:  rerun {out / 'diagnosis.rrd'}",
-        "Your own log: boatsim import LOG",
+        f"Corrected model: {model}",
+        f"Simulate with it: {boatsim} manoeuvre {MANOEUVRE} --vessel {model}",
+    ]
+    if wanted := findings.answer["next_experiment"]:
+        check = "Optional check" if is_optional(findings) else "To decide what is open"
+        lines.append(f"{check}: record the manoeuvre of {out / wanted['scenario']}")
+    return [
+        *lines,
+        f"In 3D (with the viewer rerun): {typed_program('rerun')} {out / 'diagnosis.rrd'}",
+        f"Your own log: {boatsim} import LOG",
     ]
 
 

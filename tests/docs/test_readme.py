@@ -77,6 +77,11 @@ def test_a_command_prints_what_is_shown_below_it(
     commands, shown = sessions()[place]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tests").symlink_to(ROOT / "tests")
+    programs = tmp_path / ".venv" / "bin"  # as of a reader who has not activated the environment
+    programs.parent.symlink_to(sys.prefix)
+    others = [p for p in os.environ["PATH"].split(os.pathsep) if not (Path(p) / "boatsim").exists()]
+    monkeypatch.setenv("PATH", os.pathsep.join(others))
+    monkeypatch.setattr(sys, "executable", str(programs / Path(sys.executable).name))
     printed: list[str] = []
     for words in commands:
         done = CliRunner().invoke(app, words)

@@ -13,6 +13,7 @@ from boatsim.view.formatting import (
     words_of_name,
 )
 
+DEVIATION = "  (± is one standard deviation; after a percentage, in percentage points)"
 EXPLANATION = (
     "(before: the model as given; retuned: its own numbers refitted; corrected: with the effect)"
 )
@@ -25,14 +26,16 @@ def brief_lines(f: Findings) -> list[str]:
         f: Findings of a diagnosis.
     """
     lines = [f.answer["sentence"]]
+    if "±" in lines[0]:
+        lines.append(DEVIATION)
     effects = f.answer["effects"]
     for effect in effects:
-        probability, cause = format_probability(effect["probability"]), "this"
+        probability, cause = format_probability(effect["probability"]), "this effect"
         if len(effects) > 1:
             cause = words_of_name(effect["name"])
         lines.append(
-            f"How sure: {probability} that {cause} is a true cause; "
-            f"{format_odds(effect['gain_nats'])}."
+            f"How sure: something is missing ({format_odds(effect['gain_nats'])}); {probability} "
+            f"that it is {cause}, and not another one that imitates it."
         )
     if errors := _error_lines(f):
         held_out = join_words(f.answer["fit"]["held_out"])

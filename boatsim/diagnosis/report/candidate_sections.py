@@ -1,5 +1,6 @@
 """Sections of a report on the candidate effects: their ranking, and upper limits."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -43,13 +44,14 @@ def ranking(f: Findings) -> Iterator[Block]:
         gains.append(0.0 if odds == NO_ODDS else gain)
         if name in status:
             visible = max(visible, i)
-        verdict, meaning = status.get(name, ""), f.words.get(name, "")
-        rows.append([words_of_name(name), odds, verdict, meaning])
+        verdict = status.get(name) or _reason_against(f, name, gain)
+        rows.append([words_of_name(name), odds, verdict, f.words.get(name, "")])
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone, the best ones first. The odds are those that the "
-        "better fit is chance. For an identified effect they differ from the value above, which is "
-        "computed in the presence of all other identified effects."
+        "better fit is chance. Small odds alone do not make a candidate a cause, because several "
+        "can imitate the same error. For an identified effect they differ from the value above, "
+        "which is computed in the presence of all other identified effects."
     )
     header = ["candidate", "odds of chance", "verdict", "meaning"]
     yield without_empty_columns(
@@ -60,11 +62,14 @@ def ranking(f: Findings) -> Iterator[Block]:
 
 def _evidence_of_all(f: Findings) -> Iterator[Block]:
     """Yield the evidence for all candidate effects in nats, on request."""
-    candidates, rows = f.answer["candidates"], []
+    candidates, rows = f.answer["candidates"], list[list[str]]()
+    failed = f.setting("select.screening_failure")
     for c in candidates:
-        probability = format_probability(c["probability"])
+        probability, evidence = format_probability(c["probability"]), format_nats(c["gain_nats"])
+        if c["gain_nats"] < -failed:
+            evidence = f"below {format_nats(-failed)}"
         meaning = f.words.get(c["name"], "")
-        rows.append([words_of_name(c["name"]), format_nats(c["gain_nats"]), probability, meaning])
+        rows.append([words_of_name(c["name"]), evidence, probability, meaning])
     title = f"Statistics of all {len(rows)} candidates"
     if len(rows) == 1:
         title = "Statistics of the candidate"
@@ -77,11 +82,31 @@ def _evidence_of_all(f: Findings) -> Iterator[Block]:
     yield without_empty_columns(Table(title, header, rows, (3,), folded=True, aside=True))
     yield Note(
         "How to read these statistics",
-        "The evidence compares the retuned vessel with and without the candidate. The probability "
+        "The evidence compares the retuned vessel with and without the candidate. It is that of "
+        "a quick fit, except for the best candidates. Below "
+        f"{format_nats(-failed)} nats it is only known that the candidate explains too little for "
+        "its parameters, or that the quick fit failed. The probability "
         "assumes that exactly one of these candidates is missing, or none. The probabilities add "
         "up to 100 %, so that only the strongest of several missing effects has a high "
         "probability. It is not the probability that an effect is a true cause.",
     )
+
+
+def _reason_against(f: Findings, name: str, gain: float) -> str:
+    """Return why a candidate that gains evidence alone is not identified; "" if it gains none."""
+    required = f.setting("select.least_gain")
+    if "rules" in f.answer:
+        required = f.answer["rules"]["effect_gain_nats"]
+    if short_odds(gain) == NO_ODDS or f.answer.get("skipped"):
+        return ""
+    if gain < required:
+        return "too little evidence"
+    effects = [words_of_name(e["name"]) for e in f.answer["effects"]]
+    if not effects or f.further_gains.get(name, math.inf) >= required:
+        return ""
+    if len(effects) == 1:
+        return f"{effects[0]} explains the recordings better"
+    return "the identified effects explain the recordings better"
 
 
 def _status(f: Findings) -> dict[str, str]:
@@ -113,6 +138,8 @@ def upper_limits(f: Findings) -> Iterator[Block]:
             limits.append(f"{words} at least {text}")
         for key, value in values.items():
             words, text = format_upper_limit(key, value)
+            if name in f.own_effects:
+                text += " more or less than in the vessel file"
             limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
         if limits:
             rows.append([words_of_name(name), ", ".join(limits), f.words.get(name, "")])
@@ -120,7 +147,8 @@ def upper_limits(f: Findings) -> Iterator[Block]:
         return
     caption = (
         "With 95 % confidence each effect is weaker than this, if nothing else is missing. The "
-        "limit of a factor or fraction is its distance from the value in the vessel file."
+        "limit of a factor or fraction, and of an effect that the vessel has already, is its "
+        "distance from the value in the vessel file."
     )
     if f.answer["unknown"]["flag"]:
         caption += " Here something else is missing, in which any of these effects may hide."

@@ -120,10 +120,9 @@ def recalibration_sentences(f: Findings) -> list[str]:
         return _not_adopted(f, found["refitted"])
     if not found["undetermined"]:
         return []
-    names = join_words(_names(found["undetermined"]))
     return [
-        "The retuned vessel keeps these numbers of the vessel file, because the recordings do "
-        f"not determine them better: {names}."
+        "The retuned vessel keeps these numbers of the vessel file, because the recordings do not "
+        f"determine them well enough: {join_words(_grouped_names(found['undetermined']))}."
     ]
 
 
@@ -144,5 +143,16 @@ def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:
     return sentences
 
 
-def _names(coefficients: Sequence[str]) -> list[str]:
-    return [words_of_name(name.replace(".", ", ")) for name in coefficients]
+def _grouped_names(coefficients: Sequence[str]) -> list[str]:
+    """Return coefficients by the effect that has them, such as surge drag (linear, quadratic)."""
+    by_effect: dict[str, list[str]] = {}
+    for name in coefficients:
+        effect, _, key = name.rpartition(".")
+        by_effect.setdefault(effect, []).append(words_of_name(key))
+    groups = []
+    for effect, keys in by_effect.items():
+        if effect:
+            groups.append(f"{words_of_name(effect)} ({', '.join(keys)})")
+        else:
+            groups += keys
+    return groups

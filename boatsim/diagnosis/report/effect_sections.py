@@ -110,7 +110,10 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
     likely = format_cause_probability(e["probability"])
     yield Heading(capitalize(effect_description(e["words"])), f"{e['name']} · {kind} · {likely}")
     if ratios := in_per_cent([e]):
-        yield Text(" ".join(f"{capitalize(ratio)}." for ratio in ratios))
+        sentences = [f"{capitalize(ratio)}." for ratio in ratios]
+        if explain_deviation and "±" in sentences[0]:
+            sentences.append("(± is one standard deviation, in percentage points.)")
+        yield Text(" ".join(sentences))
     if e["parameters"]:
         header = ["parameter", "value ± deviation", "meaning"]
         rows = _values(f, e["name"], e["parameters"])

@@ -41,6 +41,11 @@ def next_experiment(f: Findings) -> Iterator[Block]:
                 f"than a factor of {odds:.1f}."
             )
         return
+    if is_optional(f):
+        yield Text(
+            "This is optional: the recordings already support the answer above with the "
+            "probability stated there. The manoeuvre would test it against its closest rival."
+        )
     scenario = wanted["scenario"]
     rivals = []
     for name in wanted["separates"]:
@@ -71,6 +76,24 @@ def next_experiment(f: Findings) -> Iterator[Block]:
     yield Note(STATISTICS, f"The expected log Bayes factor is {format_nats(gain)} nats.")
     if f.steps:
         yield _commands(f)
+
+
+def is_optional(f: Findings) -> bool:
+    """Return whether the next experiment would only confirm an answer that is sure without it.
+
+    An answer is sure if each identified effect is stated without the word probably, has no
+    look-alike, and no other effect and no force remain in doubt. The experiment must test it.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    wanted, effects = f.answer["next_experiment"], f.answer["effects"]
+    if not wanted or f.answer["verdict"] != "named" or f.answer.get("also_possible"):
+        return False
+    if not {effect["name"] for effect in effects} & set(wanted["separates"]):
+        return False
+    sure = f.setting("decide.sure_probability")
+    return all(effect["probability"] >= sure for effect in effects)
 
 
 def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:

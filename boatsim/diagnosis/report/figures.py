@@ -19,7 +19,7 @@ from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import IntervalEntry
 from boatsim.physics.base import Array
 from boatsim.view.formatting import capitalize, convenient_unit, format_number
-from boatsim.view.svg_plots import SQUARE, Line, Panel, axis_limits, figure
+from boatsim.view.svg_plots import MARGIN, SQUARE, Line, Panel, axis_limits, figure
 
 MOST_CROSSINGS = 14  # zero crossings of an oscillation that are drawn
 BAND = 2.0  # [sd] half width of the bands
@@ -47,9 +47,11 @@ def missing_force_figures(
         parts = []
         for m in shared:
             parts += [m.force[axis] + BAND * m.sd[axis], m.force[axis] - BAND * m.sd[axis]]
+            if axis in m.left:
+                parts.append(m.left[axis])
         values = np.concatenate(parts)
         unit, factor = convenient_unit(shared[0].unit[axis], float(np.nanmax(np.abs(values))))
-        scales[axis] = axis_limits([factor * values]), unit, factor
+        scales[axis] = _limits_around_zero(axis_limits([factor * values])), unit, factor
     drawn = []
     for m in runs:
         panels = []
@@ -57,6 +59,12 @@ def missing_force_figures(
             panels.append(_missing_panel(m, axis, intervals, *scales[axis]))
         drawn.append(figure(panels, m.run, wide=len(runs) == 1))
     return drawn
+
+
+def _limits_around_zero(limits: tuple[float, float]) -> tuple[float, float]:
+    """Return limits of an axis on which a curve near zero can be seen, not only above the edge."""
+    low, high = limits
+    return min(low, -MARGIN * high), high
 
 
 def _missing_panel(

@@ -65,6 +65,8 @@ class Findings:
         size: Length and beam of the vessel [m].
         names: Names of the recordings by the paths of their files.
         corrected_coefficients: As `coefficients`, of the corrected vessel.
+        further_gains: Evidence [nats] that each candidate gains on top of the identified effects.
+        own_effects: Names of candidates that the vessel has already, with numbers of its own.
     """
 
     answer: Answer
@@ -83,6 +85,8 @@ class Findings:
     size: tuple[float, float] = (1.0, 0.3)
     names: Mapping[str, str] = field(default_factory=dict)
     corrected_coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
+    further_gains: Mapping[str, float] = field(default_factory=dict)
+    own_effects: frozenset[str] = frozenset()
 
     @property
     def has_added_effects(self) -> bool:

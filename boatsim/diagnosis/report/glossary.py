@@ -30,7 +30,7 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
         (
             "candidate effect",
             "A physical effect or a measurement error of the library that the vessel model does "
-            "not have. A diagnosis tests each of them.",
+            "not have, or has with other numbers. A diagnosis tests each of them.",
         ),
         (
             "evidence, nats",
@@ -89,7 +89,11 @@ def glossary(f: Findings) -> tuple[tuple[str, str], ...]:
             f"has at most {f.setting('describe.most_terms'):g} terms. Each term must reach "
             f"{odds:g} nats plus the logarithm of the number of terms tested.",
         ),
-        ("±", "One standard deviation. In 95 of 100 cases the true value lies within two of them."),
+        (
+            "±",
+            "One standard deviation. In 95 of 100 cases the true value lies within two of them. "
+            "After a percentage it is in percentage points: 69 % (± 1.5) is 67.5 to 70.5 %.",
+        ),
         (
             "surge, sway, heave, roll, pitch, yaw",
             "Forward, to starboard, down, starboard side down, bow up, bow to starboard.",

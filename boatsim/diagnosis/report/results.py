@@ -4,6 +4,7 @@ from os.path import commonprefix
 
 import numpy as np
 
+from boatsim.diagnosis.candidates import FURTHER, REORDERED, base_name
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import dof_in_state_order
@@ -59,7 +60,27 @@ def collect_findings(
         (vessel.length, vessel.beam),
         _names(loaded),
         _coefficients(ranking.best),
+        _further_gains(ranking),
+        _own_effects(ranking),
     )
+
+
+def _own_effects(ranking: Ranking) -> frozenset[str]:
+    """Return the names of the candidates of which the vessel has an effect already."""
+    own = set[str]()
+    for name in ranking.last:
+        if name.removeprefix(REORDERED).startswith(FURTHER):
+            own.add(base_name(name))
+    return frozenset(own)
+
+
+def _further_gains(ranking: Ranking) -> dict[str, float]:
+    """Return the evidence [nats] that each candidate gains on top of the best set, by its name."""
+    gains: dict[str, float] = {}
+    for name, fitted in ranking.last.items():
+        gain = float(fitted.evidence - ranking.best.evidence)
+        gains[base_name(name)] = max(gain, gains.get(base_name(name), -np.inf))
+    return gains
 
 
 def _names(loaded: Loaded) -> dict[str, str]:

@@ -186,7 +186,8 @@ def _files(f: Findings) -> Iterator[Block]:
     if patch := f.answer["patch"]:
         lines[patch] = (
             "The corrected vessel, with retuned coefficients and the identified effects. boatsim "
-            f"run, replay and diagnose read it with --vessel {patch}."
+            f"manoeuvre, replay and diagnose read it with --vessel {patch}, a scenario with "
+            f'vessel = "{patch}".'
         )
     if wanted := f.answer["next_experiment"]:
         lines[wanted["scenario"]] = "The manoeuvre to record next, as a scenario for boatsim run."

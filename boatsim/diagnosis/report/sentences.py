@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.described_terms import axis_force_words
+from boatsim.diagnosis.report.experiment_section import is_optional
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, setting_of
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
@@ -402,9 +403,12 @@ def improvement_on_held_out(f: Findings) -> str:
         return "The result could not be validated: free runs of the vessel diverge."
     if not errors:
         return "The result could not be validated: no recording was held out."
+    held_out, count = "the held-out recordings", len(fit.get("held_out", ()))
+    if count > 1:
+        held_out = "both held-out recordings" if count == 2 else f"all {count} held-out recordings"
     runs = (
         f"In free runs (simulations of {fit['horizon_s']:g} s with the recorded commands alone) "
-        "over the held-out recordings"
+        f"over {held_out}"
     )
     if not f.has_added_effects:
         return f"{runs}, the retuned vessel has an rms error of {join_words(errors)}."
@@ -526,7 +530,8 @@ def console_lines(f: Findings) -> list[str]:
     lines += [*_validation(f), *mean_force_paragraph(answer, f.has_added_effects)]
     if wanted := answer["next_experiment"]:
         rivals, expected = join_words(wanted["separates"], "or"), wanted["expected_gain_nats"]
-        lines.append(f"next experiment: {wanted['manoeuvre']}")
+        needed = "optional next experiment" if is_optional(f) else "next experiment"
+        lines.append(f"{needed}: {wanted['manoeuvre']}")
         lines.append(f"  it distinguishes {rivals}; expected: {format_odds(expected)}")
     return lines
 

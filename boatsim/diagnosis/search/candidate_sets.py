@@ -27,6 +27,7 @@ from boatsim.diagnosis.search.screening import (
     starting_points,
 )
 from boatsim.physics.base import RandomForce
+from boatsim.physics.groups import without_group
 
 SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
 CALM_STEPS = 4  # Gauss-Newton steps of a refit with the assumed levels
@@ -337,7 +338,8 @@ class CandidateSets:
         return self.linearised[1]
 
     def _report_screening(self, share: float) -> None:
-        stage = f"screening {len(self.candidates)} candidate effects"
+        effects = {base_name(without_group(name)) for name in self.candidates}
+        stage = f"screening {len(effects)} candidate effects"
         progress.report_part_of(self.report, *SCREENING)(stage, share)
 
     def _recheck_failed(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:

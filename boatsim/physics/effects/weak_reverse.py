@@ -71,7 +71,7 @@ class WeakReverse(ChannelEffect):
         low=0.05,
         high=1.5,
         unit="",
-        words="astern thrust over commanded thrust",
+        words="astern thrust over the thrust that the command gives in the model",
         fit=True,
         spread=0.3,
         inactive_value=1.0,

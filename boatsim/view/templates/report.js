@@ -133,7 +133,7 @@ function replayed(stage) {
     });
     const numbers = (film.readouts || []).map(r => r.values[k] === null ? ""
       : `${r.name} ${r.values[k].toFixed(r.decimals).replace("-", "\u2212")}${r.unit.startsWith("\u00b0") ? "" : "\u00a0"}${r.unit}`);
-    output.textContent = [formatted(time, 100, "s"), ...(film.readouts ? [] : words.filter(Boolean)), ...numbers.filter(Boolean)].join(" \u00b7 ");
+    output.textContent = [film.readouts ? formatted(time, 100, "s") : `at ${formatted(time, 100, "s")} of this run`, ...(film.readouts ? [] : words.filter(Boolean)), ...numbers.filter(Boolean)].join(" \u00b7 ");
     for (const [now, low, high] of cursors) now.style.left = `${100 * Math.max(0, Math.min(1, (time - low) / (high - low)))}%`;
     slider.value = time;
   }

@@ -69,7 +69,7 @@ def test_an_effect_that_held_out_recordings_do_not_confirm_is_marked() -> None:
         (
             {"adopted": True, "undetermined": ["linear_damping.sway"], "refitted": {}},
             "The retuned vessel keeps these numbers of the vessel file, because the recordings "
-            "do not determine them better: linear damping, sway.",
+            "do not determine them well enough: linear damping (sway).",
         ),
     ],
 )
