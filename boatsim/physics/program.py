@@ -23,7 +23,7 @@ from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import CoefficientRelease
-from boatsim.physics.native.build import NoCompiler, compiler
+from boatsim.physics.native.build import NoCompiler, compiler_path
 from boatsim.physics.native.declarations import NotTranslatable
 from boatsim.physics.native.library import native_program
 from boatsim.physics.signals import AXES, Array, MeasuredMotion
@@ -243,7 +243,7 @@ class Program:
         if DEBUG:
             return self.module
         try:
-            found: Any = native_program(cast(Any, self.module), library, compiler())
+            found: Any = native_program(cast(Any, self.module), library, compiler_path())
             return cast(CompiledProgram, found)
         except (NoCompiler, NotTranslatable):
             return self.module

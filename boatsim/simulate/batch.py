@@ -28,7 +28,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
 from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
 from boatsim.physics.kinds.effect import Effect
-from boatsim.physics.native.calls import pack_record
+from boatsim.physics.native.calls import pack_named_tuple
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
@@ -160,7 +160,7 @@ class Batch:
         self._act = np.zeros((self.n, self.program.held_size))
         self._p = np.zeros((self.n, len(self.program.values())))
         self._body, self._k = np.zeros((self.n, 6)), np.zeros((self.n, self.code.K))
-        self._given = pack_record(self.code, self.fleet)
+        self._given = pack_named_tuple(self.code, self.fleet)
         self.assign(np.arange(self.n) % len(self.vessels))
         self.reset()
 

@@ -184,7 +184,7 @@ class ProgramFunction:
             *given: Its arguments, whose arrays must live as long as the call is used.
         """
         if isinstance(self._function, NativeFunction):
-            words = np.frombuffer(self._function.packed(*given), dtype=np.int64)
+            words = np.frombuffer(self._function.pack_arguments(*given), dtype=np.int64)
             return Call(self._pointer, (words.ctypes.data, 0), words)
         return Call(self._pointer, given)
 

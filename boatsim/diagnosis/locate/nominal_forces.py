@@ -8,7 +8,7 @@ from boatsim.diagnosis.experiment_design.manoeuvres import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
-from boatsim.physics.native.calls import prepare_call
+from boatsim.physics.native.calls import partial_call
 
 
 def actuator_states(
@@ -35,7 +35,7 @@ def actuator_states(
     program.functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
     steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
     command = np.zeros(mapped.commands.shape[1])
-    advance = prepare_call(
+    advance = partial_call(
         program.functions, "advance_actuators", command, memory, ..., values, on, act
     )
     parts = np.empty((len(mapped.times), 3, len(act) // 3))
@@ -69,7 +69,7 @@ def body_forces(
     program = mapped.program
     on = program.effect_switches(effects)
     y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
-    force = prepare_call(
+    force = partial_call(
         program.functions, "total_body_force", 0.0, y, act, np.int64(0), values, on
     )
     rows = []

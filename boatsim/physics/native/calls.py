@@ -16,7 +16,7 @@ from boatsim.physics.native.kinds import (
     Kind,
     Scalar,
     Struct,
-    leaves,
+    scalar_and_array_kinds,
 )
 from boatsim.physics.native.translate import Translation
 
@@ -34,7 +34,7 @@ def argument_kinds(program: Translation, entry: Entry) -> list[Kind]:
     kinds: list[Kind] = []
     for kind in entry.arguments:
         if kind in RECORDS:
-            kinds.append(program.struct(kind, RECORDS[kind]))
+            kinds.append(program.declare_struct(kind, RECORDS[kind]))
         else:
             kinds.append(kind)
     return kinds
@@ -60,7 +60,7 @@ class NativeFunction:
         function.argtypes, function.restype = [ctypes.c_char_p, ctypes.c_void_p], ctypes.c_double
         self.function, self._result = function, entry.result
         self._kinds = argument_kinds(Translation(), entry)
-        every = chain.from_iterable(map(leaves, self._kinds))
+        every = chain.from_iterable(map(scalar_and_array_kinds, self._kinds))
         self._pack = struct.Struct("=" + "".join(map(_format, every))).pack
 
     @property
@@ -77,16 +77,16 @@ class NativeFunction:
         Raises:
             TypeError: An array is not contiguous, or has another type or number of dimensions.
         """
-        return self._run(self.packed(*given))
+        return self._run(self.pack_arguments(*given))
 
-    def packed(self, *given: Any) -> bytes:
+    def pack_arguments(self, *given: Any) -> bytes:
         """Return arguments as words. The arrays among them must live as long as these are used."""
         flat: list[Any] = []
         for kind, value in zip(self._kinds, given, strict=True):
             _flatten(kind, value, flat)
         return self._pack(*flat)
 
-    def prepared(self, *given: Any) -> Callable[..., Any]:
+    def partial(self, *given: Any) -> Callable[..., Any]:
         """Return a function of the floats in whose place `...` is given; the others are fixed.
 
         A call costs a fraction of an ordinary one. The function must not be called by two threads
@@ -174,7 +174,7 @@ def _address(array: Any) -> int:
         return int(array.ctypes.data)
 
 
-def pack_record(code: Any, record: Any) -> Any:
+def pack_named_tuple(code: Any, record: Any) -> Any:
     """Return a named tuple of arrays in a form that makes calls of a program's functions faster.
 
     Args:
@@ -184,11 +184,11 @@ def pack_record(code: Any, record: Any) -> Any:
     if not isinstance(code.advance_actuators, NativeFunction):
         return record
     words: list[Any] = []
-    _flatten(Translation().struct(type(record), RECORDS[type(record)]), record, words)
+    _flatten(Translation().declare_struct(type(record), RECORDS[type(record)]), record, words)
     return PackedRecord(words, record)
 
 
-def prepare_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
+def partial_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
     """Return a function of a program as a function of those numbers for which `...` is given.
 
     Args:
@@ -198,7 +198,7 @@ def prepare_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
     """
     function = getattr(code, name)
     if isinstance(function, NativeFunction):
-        return function.prepared(*given)
+        return function.partial(*given)
     free = _places_of_numbers(given)
 
     def call(*numbers: float) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.native.kinds import REAL, Kind, Struct, Value, as_real, constant
+from boatsim.physics.native.kinds import REAL, Kind, Struct, Value, convert_to_double, number_value
 
 NUMBERS = bool | int | float
 
@@ -20,7 +20,7 @@ class NotTranslatable(BadInput):
 
 
 @cache
-def source_head() -> str:
+def source_preamble() -> str:
     """Return the C source in front of every program: arrays and small functions."""
     return (Path(__file__).parent / "head.h").read_text(encoding="utf-8")
 
@@ -36,9 +36,9 @@ class Declarations(ABC):
         self._names: set[str] = set()
 
     @property
-    def text(self) -> str:
+    def source_text(self) -> str:
         """The whole C source."""
-        return "\n".join([source_head(), *self.structs, *self.functions])
+        return "\n".join([source_preamble(), *self.structs, *self.functions])
 
     def unused_name(self, name: str) -> str:
         """Return a C name that nothing else has.
@@ -53,7 +53,7 @@ class Declarations(ABC):
         self._names.add(found)
         return found
 
-    def struct(self, record: Any, kinds: Sequence[Kind]) -> Struct:
+    def declare_struct(self, record: Any, kinds: Sequence[Kind]) -> Struct:
         """Return the struct of a named tuple, or of a tuple.
 
         Args:
@@ -72,16 +72,16 @@ class Declarations(ABC):
             self._structs[key] = found
         return self._structs[key]
 
-    def constant_tuple(self, found: tuple[Any, ...]) -> Value:
+    def declare_constant_tuple(self, found: tuple[Any, ...]) -> Value:
         """Return a constant tuple of numbers or of such tuples.
 
         Args:
             found: The Python tuple.
         """
-        parts = [self.constant(x) for x in found]
+        parts = [self.constant_value(x) for x in found]
         if any(p.kind == REAL for p in parts):
-            parts = [as_real(p) for p in parts]
-        kind = self.struct(None, [p.kind for p in parts])
+            parts = [convert_to_double(p) for p in parts]
+        kind = self.declare_struct(None, [p.kind for p in parts])
         key = (kind, found)
         if key not in self._constants:
             name = self.unused_name("constants")
@@ -90,7 +90,7 @@ class Declarations(ABC):
             self._constants[key] = Value(kind, name, found)
         return self._constants[key]
 
-    def constant(self, found: Any) -> Value:
+    def constant_value(self, found: Any) -> Value:
         """Return a constant number or tuple.
 
         Args:
@@ -102,13 +102,13 @@ class Declarations(ABC):
         if isinstance(found, np.integer | np.floating | np.bool_):
             found = found.item()
         if isinstance(found, NUMBERS):
-            return constant(found)
+            return number_value(found)
         if isinstance(found, tuple):
-            return self.constant_tuple(found)
+            return self.declare_constant_tuple(found)
         raise TypeError(f"{type(found).__name__} is no constant")
 
     @abstractmethod
-    def function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
+    def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
         """Translate a function for arguments of given kinds; return its name and result's kind.
 
         Args:
@@ -123,7 +123,7 @@ def _initial(value: Value) -> str:
         inside = []
         assert isinstance(value.kind, Struct)
         for x, kind in zip(value.fixed, value.kind.kinds, strict=True):
-            one = Value(kind, "", x) if isinstance(x, tuple) else constant(x)
-            inside.append(_initial(as_real(one) if kind == REAL else one))
+            one = Value(kind, "", x) if isinstance(x, tuple) else number_value(x)
+            inside.append(_initial(convert_to_double(one) if kind == REAL else one))
         return f"{{{', '.join(inside)}}}"
     return value.text

@@ -16,8 +16,8 @@ from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.native import build
-from boatsim.physics.native.calls import prepare_call
-from boatsim.physics.native.library import NativeProgram, program_source
+from boatsim.physics.native.calls import partial_call
+from boatsim.physics.native.library import NativeProgram, translate_program
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Recording
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 @pytest.fixture(autouse=True)
 def _with_a_compiler() -> None:
     try:
-        build.compiler()
+        build.compiler_path()
     except build.NoCompiler as reason:
         pytest.skip(str(reason))
 
@@ -53,13 +53,13 @@ def cruise(vessel: Vessel) -> Recording:
 @pytest.mark.parametrize("name", shipped_content_names("vessel"))
 def test_every_vessel_has_a_c_form(name: str) -> None:
     module = Program(load_vessel(name)).module
-    assert "kalman_filter" in program_source(module, "estimation")
-    assert "passive_callback" in program_source(module, "simulation")
+    assert "kalman_filter" in translate_program(module, "estimation")
+    assert "passive_callback" in translate_program(module, "simulation")
 
 
 def test_a_program_with_candidates_has_a_c_form_without_the_callback_of_mujoco() -> None:
     program = Program(load_vessel("joystick_boat"), candidates=(CommandDelay(),))
-    source = program_source(program.module, "simulation")
+    source = translate_program(program.module, "simulation")
     assert "rollout" in source and "passive" not in source
     assert isinstance(program.simulation, NativeProgram)
 
@@ -120,9 +120,9 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
     found = []
     for code in (program.simulation, program.module):
         memory[:] = act[:] = 0.0
-        advance = prepare_call(code, "advance_actuators", commands, memory, ..., values, on, act)
+        advance = partial_call(code, "advance_actuators", commands, memory, ..., values, on, act)
         y = np.zeros(2 * program.module.NQ)
-        step = prepare_call(
+        step = partial_call(
             code, "step_in_place", ..., y, ..., act, values, on, k, np.zeros(program.module.NQ)
         )
         for dt in (0.02, 0.05):
@@ -138,7 +138,7 @@ def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> N
     program = Program(load_vessel("joystick_boat"))
     y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
     given = 0.0, y, act, np.int64(0), program.values(), program.effect_switches()
-    force = prepare_call(program.simulation, "total_body_force", *given)
+    force = partial_call(program.simulation, "total_body_force", *given)
     for speed in (0.5, 1.0):
         y[program.module.NQ] = speed
         assert force() == program.simulation.total_body_force(*given)
@@ -201,7 +201,7 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
 
 def test_a_library_is_built_once_and_again_if_it_is_damaged(tmp_path: Path) -> None:
     def made() -> str:
-        return program_source(module, "simulation")
+        return translate_program(module, "simulation")
 
     module = Program(load_vessel("kvlcc2_roll")).module
     build.load_library(tmp_path, "simulation", made)
