@@ -21,7 +21,7 @@ class CrashStop(Steered):
         super().reset()
         self._stopped = self._begun = False
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Keep the helm midships and detect the end of the crash stop (no speed ahead).
 
         Args:

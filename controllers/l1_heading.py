@@ -177,7 +177,7 @@ class L1Heading(CompiledController):
 
         The estimates are theta, sigma and omega of the model of the class.
         """
-        m = self.memory_record
+        m = self.single_memory_record
         theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1": Estimate(theta_1, *THETA_1),

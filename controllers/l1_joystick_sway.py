@@ -6,7 +6,12 @@ from math import atan2, copysign, isnan, nan, sin
 from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LoopChannel
-from boatsim.control.allocation import HEADING, command_outboards, limit, sway_difference
+from boatsim.control.allocation import (
+    HEADING,
+    clip_compiled,
+    command_outboards,
+    thrust_difference_for_sway,
+)
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record_type, unlocked
@@ -27,7 +32,7 @@ def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
         s: Sensor readings.
         wanted: Demanded sway speed [m/s].
     """
-    opened = sway_difference(q, wanted)
+    opened = thrust_difference_for_sway(q, wanted)
     if isnan(s.v):
         return opened
     felt = filtered_disturbance(
@@ -45,7 +50,7 @@ def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
         return 0.0
     spread = (q.sway_mass * q.sway_pole * wanted - felt) / sin(atan2(q.half_spacing, q.arm))
     side = copysign(1.0, wanted)
-    return side * limit(side * spread, q.least_difference, q.largest_difference)
+    return side * clip_compiled(side * spread, q.least_difference, q.largest_difference)
 
 
 @unlocked
@@ -102,7 +107,7 @@ class L1JoystickSway(AdaptiveJoystick):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw, surge and sway, and the reference motion."""
-        sway = self.memory_record["sway"]
+        sway = self.single_memory_record["sway"]
         return {
             **super().estimates(),
             "sigma_sway_N": Estimate(float(sway["sigma"]), nan, nan),

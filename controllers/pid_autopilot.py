@@ -11,10 +11,10 @@ from boatsim.control.allocation import (
     STICK,
     Outboards,
     allocate,
+    clip_compiled,
     integrate_heading,
-    limit,
     nominal_wrench,
-    sway_difference,
+    thrust_difference_for_sway,
     write_outboard_commands,
 )
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
@@ -53,7 +53,7 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
     """
     if m.acted != 0.0:
         integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
-    error = limit(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
+    error = clip_compiled(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
     if m.moment_missed * error <= 0.0:
         m.moment_held += q.period * q.inertia * q.ki * error
     return q.inertia * (q.kp * error + q.kd * (wanted - s.r)) + m.moment_held
@@ -98,7 +98,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         moment = yaw_moment(q, m, s, g.yaw_radps)
         surge = surge_force(q, m, s, g.surge_mps)
         room = q.surge_kp * q.mass * abs(g.surge_mps) + abs(q.blind_surge * g.surge_mps)
-        port, starboard, angle = allocate(q, surge, sway_difference(q, g.sway_mps), moment, room)
+        port, starboard, angle = allocate(
+            q, surge, thrust_difference_for_sway(q, g.sway_mps), moment, room
+        )
         write_outboard_commands(q, port, starboard, angle, sent[b])
         X, _, N = nominal_wrench(q, port, starboard, angle)
         m.surge_missed, m.moment_missed, m.acted = (

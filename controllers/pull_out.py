@@ -22,7 +22,7 @@ class PullOut(Steered):
         60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held"
     )
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of the present part of a pull-out manoeuvre [rad].
 
         Args:

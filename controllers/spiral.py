@@ -23,7 +23,7 @@ class Spiral(Steered):
     )
     steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of the present step of a spiral manoeuvre [rad].
 
         Args:

@@ -12,7 +12,7 @@ class TurningCircle(Steered):
 
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the constant helm angle of a turning circle [rad].
 
         Args:

@@ -35,7 +35,7 @@ class Zigzag(Steered):
         super().reset()
         self._side, self._reversed = copysign(1.0, self.angle), 0
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of a zig-zag [rad], reversed when the execute heading is reached.
 
         Args:

@@ -80,7 +80,7 @@ def show_task_progress() -> Iterator[Report]:
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
         nonlocal last_line
-        paced.note(share)
+        paced.record_share_done(share)
         if monotonic() - last_line < LINE_INTERVAL and share < 1.0:
             return
         last_line = monotonic()
@@ -99,7 +99,7 @@ class _Pace:
     def __init__(self) -> None:
         self.first: tuple[float, float] | None = None  # time [s] and share of the work done
 
-    def note(self, share: float) -> None:
+    def record_share_done(self, share: float) -> None:
         """Note the share of the work that is done now."""
         if self.first is None and share > 0.0:
             self.first = (monotonic(), share)
@@ -149,7 +149,7 @@ def _show_bar(paced: "_Pace | None" = None) -> Iterator[Report]:
         done = max(share, bars.tasks[row].completed)
         left = time_left(elapsed, done)
         if paced:
-            paced.note(done)
+            paced.record_share_done(done)
             left = paced.time_left(done)
         bars.update(row, description=escape_for_terminal(words), completed=done, left=left)
 

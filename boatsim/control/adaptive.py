@@ -21,7 +21,7 @@ Law = Callable[[Complex], tuple[Complex, Complex]]
 HIGHEST = 1e3  # [rad/s] highest crossover of a continuous loop
 
 
-def projection_share(square: float, along: float, radius: float, tolerance: float) -> float:
+def projection_factor(square: float, along: float, radius: float, tolerance: float) -> float:
     """Return the factor by which the projection operator of adaptive control corrects a rate.
 
     The projected rate of the estimate theta is y less this factor times theta. The convex function
@@ -53,7 +53,7 @@ def project_interval(value: float, rate: float, low: float, high: float, toleran
         tolerance: Projection tolerance.
     """
     off = value - 0.5 * (low + high)
-    return rate - projection_share(off * off, off * rate, 0.5 * (high - low), tolerance) * off
+    return rate - projection_factor(off * off, off * rate, 0.5 * (high - low), tolerance) * off
 
 
 @dataclass

@@ -150,7 +150,7 @@ class CompiledController(Controller):
         return type(self).step is CompiledController.step
 
     @property
-    def memory_record(self) -> Any:
+    def single_memory_record(self) -> Any:
         """State of the controller as a single record."""
         return self._memory[0]
 

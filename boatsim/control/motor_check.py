@@ -72,7 +72,7 @@ class Train:
         for sense in (1, -1, -1, 1):
             self.senses += [sense] * self.pulse + still
 
-    def add_reading(self, rate: float, felt: float) -> None:
+    def add_imu_readings(self, rate: float, felt: float) -> None:
         """Append gyro and accelerometer readings at the begin of a period to a pulse train.
 
         After the last period, those at its end are appended too.
@@ -202,9 +202,9 @@ class MotorCheck:
             for side in (PORT, STARBOARD):
                 train = Train(round(length / self.period), round(self.rest / self.period))
                 for sense in train.senses:
-                    train.add_reading(*self._reading)
+                    train.add_imu_readings(*self._reading)
                     yield Pulse(sense, side)
-                train.add_reading(*self._reading)
+                train.add_imu_readings(*self._reading)
                 self._found.append(
                     train.fit_pulse_response(
                         self.period, self.lag, self.drift, 1 if side == STARBOARD else -1

@@ -24,7 +24,7 @@ THIRD_DIFFERENCE = 20.0  # sum of the squared binomial coefficients of a third d
 FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
-def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
+def log_latent_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Return the log prior density of the levels of the latent (unmodelled) force.
 
     It is highest at the assumed disturbance level, and decreases faster below it than above.
@@ -39,7 +39,7 @@ def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     return float(np.sum(-0.5 * deviation**2))
 
 
-def log_level_prior(problem: Problem, levels: NoiseLevels) -> float:
+def log_noise_level_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Return the log prior density of the latent force and of the noise of measured forces.
 
     Args:
@@ -48,7 +48,7 @@ def log_level_prior(problem: Problem, levels: NoiseLevels) -> float:
     """
     over = _log_input_noise(levels) - _log_input_noise(problem.ambient)
     noise = -0.5 * float(np.sum((over / problem.config.fit.input_noise_sd) ** 2))
-    return log_force_prior(problem, levels) + noise
+    return log_latent_force_prior(problem, levels) + noise
 
 
 def _log_input_noise(levels: NoiseLevels) -> Array:
@@ -134,7 +134,7 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
         deviation = float(np.sum(((theta[searched] - mean) / sd) ** 2))
         prior = -0.5 * (deviation + _noise_prior(problem, x[k:n], specified))
         likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
-        return likelihood + log_level_prior(problem, levels) + prior
+        return likelihood + log_noise_level_prior(problem, levels) + prior
 
     noise = _log_noise(found.levels, families)
     logs = [np.log(found.levels.force), _log_input_noise(found.levels)]
@@ -174,7 +174,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     def maximize_noise(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
         def score(x: Array) -> float:
             likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-            return likelihood + log_level_prior(problem, levels(x)) + prior(x)
+            return likelihood + log_noise_level_prior(problem, levels(x)) + prior(x)
 
         return maximize(score, x, step, enough, config)[1]
 
@@ -183,7 +183,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     x = np.concatenate([start, np.clip(rough, low, high), _log_input_noise(prior_levels)])
     about = problem.filter(found.free, found.theta, on, levels(x))
     for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
-        begin = about.log_likelihood + log_level_prior(problem, levels(x)) + prior(x)
+        begin = about.log_likelihood + log_noise_level_prior(problem, levels(x)) + prior(x)
         if np.isfinite(begin):
             break
         x[:n] += 1.0
@@ -219,7 +219,7 @@ def fit_latent_force_spectrum(problem: Problem, found: Fit) -> NoiseLevels:
     def score(x: Array) -> float:
         prior = -0.5 * ((x[1] - usual) / config.correlation_time_sd) ** 2
         likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-        return likelihood + log_force_prior(problem, levels(x)) + float(prior)
+        return likelihood + log_latent_force_prior(problem, levels(x)) + float(prior)
 
     begin = np.array([0.0, np.log(found.levels.time_constant)])
     return levels(maximize(score, begin, TIME_STEP, config.fine_gain, config)[1])

@@ -73,7 +73,7 @@ def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     return vessel.diagnosis.horizon or float(f"{config.horizon * froude_time_scale(vessel):.3g}")
 
 
-def used_sample_rate(
+def downsampling_rate(
     vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load
 ) -> float:
     """Return the rate [Hz] to which recordings are downsampled before a diagnosis.

@@ -9,8 +9,8 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
     Library,
+    candidate_library,
     candidate_names_except,
-    library_for,
     with_specified_position_drift,
     without_excluded_effects,
 )
@@ -26,7 +26,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.diagnosis.loading import Loaded
 from boatsim.diagnosis.locate import nominal_forces
-from boatsim.diagnosis.near_track import track_facts
+from boatsim.diagnosis.near_track import small_track_fact
 from boatsim.diagnosis.problem import Problem, check_uncertainty
 from boatsim.diagnosis.work import WorkCount
 from boatsim.physics.program import Program
@@ -90,12 +90,12 @@ def set_up_estimation_problem(
     uncertainty = _uncertainty(loaded, vessel, config)
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
-    track = track_facts([*loaded.fitted, *loaded.held_out], vessel, config.load)
+    track = small_track_fact([*loaded.fitted, *loaded.held_out], vessel, config.load)
     libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
-        libraries[path] = library_for(known, loaded.library, {**facts, **track}, columns)
-        candidates = libraries[path].compiled if with_candidates else ()
+        libraries[path] = candidate_library(known, loaded.library, {**facts, **track}, columns)
+        candidates = libraries[path].compiled_effects if with_candidates else ()
         programs[path] = Program(known, candidates)
     levels = prior_noise_levels(vessel, loaded.fitted, config)
     noise = shared_noise(vessel, loaded.fitted, config)
@@ -108,7 +108,7 @@ def set_up_estimation_problem(
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
     names = candidate_names_except(library, loaded.without)
-    names = (*names, *problem.names_in_groups(names))
+    names = (*names, *problem.candidates_in_single_groups(names))
     return Question(problem, tuple(held_out), mapper, library, names)
 
 

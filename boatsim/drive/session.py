@@ -132,7 +132,7 @@ class Session:
         with background_listener(listen, self._interval) as files:
 
             def show(rows: Recording) -> None:
-                self._tally.add(rows)
+                self._tally.add_rows(rows)
                 self._heading = float(rows["psi_rad"][-1])
                 self._end = float(rows.t[-1])
                 metrics = self._tally.metrics()
@@ -204,7 +204,7 @@ def _scene_of(scenario: Scenario) -> Scene:
     return scene_from_model(world.build_model(vessel, tank, file.step), vessel, tank)
 
 
-def folder_name(vessel: str, now: float) -> Path:
+def output_folder_name(vessel: str, now: float) -> Path:
     """Return the output folder of a driven run, named after the local time to be unique.
 
     Args:

@@ -84,7 +84,7 @@ class Task:
             address="",
         )
 
-    def scenario_in_folder(self, folder: Path) -> Scenario:
+    def scenario_with_address(self, folder: Path) -> Scenario:
         """Return the driven scenario with the address of its file in an output folder.
 
         Args:

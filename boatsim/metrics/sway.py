@@ -66,7 +66,7 @@ class Sway(CameraMetricSet):
         )
         if frame is None:
             return {}
-        part = frames.until(frame)
+        part = frames.up_to_frame(frame)
         found = self.yaw_rate_metrics(np.unwrap(part.heading), part.t[1] - part.t[0])
         return {name: float(value) for name, value in found.items()} | {
             "surge_offset": float(part.place[-1, 0] - part.place[0, 0]),  # x_i - x_0

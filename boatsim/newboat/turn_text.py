@@ -57,7 +57,7 @@ def _stage_commands(boat: Particulars) -> list[dict[str, float]]:
             least = mount.largest_astern(most)
             force = share * most + helm * by_thrust.get(name, 0.0)
             force = min(max(force, -least), most)
-            found[boat.law.channel(name)] = boat.law.command(force, most, least)
+            found[boat.law.channel_name(name)] = boat.law.command_for_thrust(force, most, least)
         for channel, gain in angles.items():
             found[channel] = min(max(helm * gain, -limit), limit)
         return found

@@ -41,7 +41,7 @@ class Range(Table):
             raise ValueError("neutral must lie between low and high")
         return self
 
-    def of(self, values: Array) -> Array:
+    def convert(self, values: Array) -> Array:
         """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
         ends = sorted([(self.low, -1.0), (self.neutral, 0.0), (self.high, 1.0)])
         of_signal, of_share = np.array(ends).T
@@ -50,7 +50,7 @@ class Range(Table):
         return np.asarray(full * np.abs(share) ** self.exponent)
 
     @property
-    def ends(self) -> tuple[float, float]:
+    def unclipped_range(self) -> tuple[float, float]:
         """Smallest and largest value of the signal that is not set to a limit."""
         return min(self.low, self.high), max(self.low, self.high)
 
@@ -75,13 +75,13 @@ class Curve(Table):
                 raise ValueError("points must be pairs [signal, column] by increasing signal")
         return self
 
-    def of(self, values: Array) -> Array:
+    def convert(self, values: Array) -> Array:
         """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
         of_signal, of_column = np.array(self.points).T
         return np.asarray(np.interp(values, of_signal, of_column))
 
     @property
-    def ends(self) -> tuple[float, float]:
+    def unclipped_range(self) -> tuple[float, float]:
         """Smallest and largest value of the signal that is not set to a limit."""
         return self.points[0][0], self.points[-1][0]
 
@@ -119,7 +119,7 @@ class Allocation(Table):
             raise ValueError("low must be less than high")
         return self
 
-    def of(self, values: Array) -> Array:
+    def convert(self, values: Array) -> Array:
         """Return the values (N,) of the column of the sum (N,) of the terms."""
         total = np.clip(values, self.low, self.high)
         below = self.coefficient_below or self.coefficient
@@ -130,7 +130,7 @@ class Allocation(Table):
         return np.asarray(np.sign(total) * size)
 
     @property
-    def ends(self) -> tuple[float, float]:
+    def unclipped_range(self) -> tuple[float, float]:
         """Smallest and largest value of the sum that is not set to a limit."""
         return self.low, self.high
 

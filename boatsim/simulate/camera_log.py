@@ -79,7 +79,7 @@ class CameraLog:
         )
         for frame in frames:
             self._set_mean_commands()
-            self.table.add([*frame[:4], *frame.marks, *commands])
+            self.table.append_row([*frame[:4], *frame.marks, *commands])
         self._number += len(frames)
         return frames
 

@@ -177,7 +177,7 @@ class ProgramFunction:
         elif not DEBUG:
             self._pointer = FunctionPointer(function, call)
 
-    def call(self, *given: Any) -> Call:
+    def bind_arguments(self, *given: Any) -> Call:
         """Return a call of the function.
 
         Args:

@@ -70,7 +70,7 @@ class Engine(Stepper):
         self.tank = tank or world.open_water(vessel)
         self._k = np.zeros(self.code.K)
         self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
-        size = len(self._values) + self.code.K + self.program.held_size + 2
+        size = len(self._values) + self.code.K + self.program.actuator_signal_size + 2
         with without_passive_callback():
             self.model = world.build_model(vessel, self.tank, step, size, **options)
             self.data = mujoco.MjData(self.model)
@@ -80,7 +80,7 @@ class Engine(Stepper):
         self._place = np.array(list(map(joints.index, coordinates)))
         # SNAME = sign * z-up, for coordinates and rates
         self._sign = np.array([float(SIGN[name]) for name in coordinates])
-        self._held = self.data.userdata[-self.program.held_size - 2 :]
+        self._held = self.data.userdata[-self.program.actuator_signal_size - 2 :]
         self.callback = self._choose_callback(callback, size)
         self.reset()
 

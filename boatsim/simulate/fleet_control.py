@@ -187,8 +187,8 @@ class CompiledControl:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
         periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
         loop = self._make_loop(goals, aboard.next_noise(boats, count))
-        feel = self._feel.call(boats, batch.fleet, self._felt)
-        advance = self._step.call(boats, batch.fleet, batch.step, aboard.steps)
+        feel = self._feel.bind_arguments(boats, batch.fleet, self._felt)
+        advance = self._step.bind_arguments(boats, batch.fleet, batch.step, aboard.steps)
         self._run(self._law, feel, advance, boats, periods, batch.fleet.commands, loop)
 
     def _make_loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
@@ -221,7 +221,7 @@ class CompiledControl:
             self._run = compiled_loop.run_periods
         else:
             boats = np.arange(1)
-            feel = self._feel.call(boats, batch.fleet, self._felt)
-            advance = self._step.call(boats, batch.fleet, batch.step, 1)
+            feel = self._feel.bind_arguments(boats, batch.fleet, self._felt)
+            advance = self._step.bind_arguments(boats, batch.fleet, batch.step, 1)
             kinds = self._law.kind, numba.typeof(feel), numba.typeof(advance)
             self._run = compiled_loop.compile_loop(kinds, numba.typeof(loop))

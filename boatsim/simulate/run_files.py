@@ -142,10 +142,10 @@ def run_into_folder(
             so_far = None if steering else MetricsSoFar(new / METRICS)
             if "yaw" in scenario.vessel.dof:  # a camera above the water does not see a hull roll
                 camera = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv"))
-                options = replace(options, camera_listener=camera.add)
+                options = replace(options, camera_listener=camera.append_rows)
 
             def listen(rows: Recording) -> None:
-                table.add(rows)
+                table.append_rows(rows)
                 for observer in started:
                     observer.add_rows(rows)
                 if so_far:
@@ -257,7 +257,7 @@ class CsvFile:
         self._file = AppendedFile(path.open("wb", buffering=0), path)
         self._has_header = False
 
-    def add(self, rows: Recording) -> None:
+    def append_rows(self, rows: Recording) -> None:
         """Append the next rows of a recording to its CSV file.
 
         Args:
@@ -267,7 +267,7 @@ class CsvFile:
             OSError: If the disk is full; then none of the rows is in the file.
         """
         header = "" if self._has_header else csv_header(rows)
-        self._file.add((header + csv_rows(rows)).encode())
+        self._file.append((header + csv_rows(rows)).encode())
         self._has_header = True
 
     def __enter__(self) -> Self:

@@ -61,12 +61,12 @@ class Stepper(ABC):
         """
         self.vessel, self.step = vessel, step
         self.program = Program(vessel)
-        self.code = self.program.simulation
+        self.code = self.program.simulation_functions
         self._values = self.program.values()
         self._on = self.program.effect_switches()
         self._commands = np.zeros(len(vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
-        self._act = np.zeros(self.program.held_size)
+        self._act = np.zeros(self.program.actuator_signal_size)
         self._actuators = vessel.actuators
         # mean of each actuator over the last step
         self._mean = np.zeros(len(self._actuators))

@@ -65,7 +65,7 @@ def sample_style(boat: str, colour: Colour) -> rr.SeriesPoints:
     return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
 
-def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
+def missing_force_style(name: str, flagged: Colour) -> rr.SeriesLines:
     """Return the style of a curve of a missing force, of its band, or of its flagged part.
 
     Args:

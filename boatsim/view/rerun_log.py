@@ -210,7 +210,9 @@ def write_diagnosis_log(
         marked = replace(missing, signals={**missing.signals, **_flagged_force(missing, intervals)})
         for name in marked.signals:
             stream.log(
-                f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True
+                f"missing/{name}",
+                blueprint.missing_force_style(name, COLOURS["flagged"]),
+                static=True,
             )
         _log_signals(stream, marked, "missing")
     firsts = [segments[0].signals for segments in reversed(list(boats.values()))]

@@ -69,7 +69,7 @@ class RunPage:
         Args:
             rows: Rows that follow those received before.
         """
-        self._log.add(rows)
+        self._log.add_rows(rows)
 
     def finish(self, result: RunEntry) -> None:
         """Write the page.

@@ -42,7 +42,7 @@ def project_ball(
     this radius."""
     square = sum(t * t for t in theta)
     along = sum(t * y for t, y in zip(theta, rate, strict=True))
-    share = adaptive.projection_share(square, along, radius, tolerance)
+    share = adaptive.projection_factor(square, along, radius, tolerance)
     return [y - share * t for t, y in zip(theta, rate, strict=True)]
 
 
@@ -246,7 +246,7 @@ def compiled(block: Any, **replaced: Any) -> Any:
     return njit(FunctionType(block.__code__, block.__globals__ | replaced))
 
 
-ball_share = compiled(adaptive.projection_share)
+ball_share = compiled(adaptive.projection_factor)
 interval = compiled(adaptive.project_interval, projection_share=ball_share)
 
 

@@ -82,7 +82,7 @@ def test_a_failure_of_linear_algebra_becomes_an_answer(
     def fail(_: object) -> None:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(pipeline, "fit", fail)
+    monkeypatch.setattr(pipeline, "fit_baseline_models", fail)
     runs = [sail(f"run_{seed}", seed, nothing)[0] for seed in (1, 2)]
     found = pipeline.diagnose_loaded(loaded(tmp_path, runs))
     assert found.findings.answer["verdict"] == "unknown"

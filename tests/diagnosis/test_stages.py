@@ -41,7 +41,7 @@ def question(loaded: Loaded) -> Question:
 
 @pytest.fixture(scope="module")
 def base(question: Question) -> Baseline:
-    return pipeline.fit(question)
+    return pipeline.fit_baseline_models(question)
 
 
 def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -> None:
@@ -58,7 +58,7 @@ def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -
 def test_check_finds_nothing_wrong_with_a_sound_recording(
     loaded: Loaded, question: Question
 ) -> None:
-    assert not [f for f in pipeline.check(loaded, question) if f.kind == "fault"]
+    assert not [f for f in pipeline.check_recordings(loaded, question) if f.kind == "fault"]
 
 
 def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
@@ -69,16 +69,16 @@ def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
 def test_later_stages_take_the_results_of_earlier_ones(
     loaded: Loaded, question: Question, base: Baseline
 ) -> None:
-    selection = pipeline.select(question, base, loaded)
+    selection = pipeline.select_candidates(question, base, loaded)
     assert selection.ranking.recalibrated is base.recalibrated
     assert set(selection.ranking.first) == {ONLY}
-    decision = pipeline.decide(question, selection)
+    decision = pipeline.decide_causes(question, selection)
     assert len(decision.judgements) == len(selection.ranking.named)
-    ranking = replace(pipeline.describe(question, decision), description=None)
+    ranking = replace(pipeline.describe_unexplained_force(question, decision), description=None)
     ranking = pipeline.adopt_refitted_coefficients(question, decision, ranking)
-    evaluation = pipeline.validate(question, decision, ranking)
+    evaluation = pipeline.validate_on_held_out(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
-    plan = pipeline.plan(decision, ranking)
+    plan = pipeline.plan_next_experiment(decision, ranking)
     answer = compose_answer(loaded, question, (), decision, ranking, evaluation, plan, 1.0)
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]

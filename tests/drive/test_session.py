@@ -286,7 +286,7 @@ def test_what_goes_wrong_aside_ends_the_run() -> None:
 def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> None:
     tally = tracking_errors.TrackingErrorSums()
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
-        tally.add(rows(begin, end))
+        tally.add_rows(rows(begin, end))
     assert tally.metrics() == pytest.approx(tracking_errors.compute_errors(rows(0, 100)))
 
 

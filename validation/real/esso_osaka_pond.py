@@ -246,7 +246,7 @@ class Weather:
         names = ship.effects
         if "wind" not in names:
             names = (*names, "wind")
-        free = problem.parameters(names)
+        free = problem.free_parameters(names)
         theta = free_parameter_values(free, ship.values())
         self.rest = []  # positions of all parameters but those of the wind
         for i, f in enumerate(free):
@@ -434,8 +434,8 @@ def open_runs(
     Returns:
         Runs by name, and the vessel.
     """
-    vessel = loading.vessel_for(next(iter(runs.values())), vessel_name, ())
-    rate = priors.used_sample_rate(vessel)
+    vessel = loading.vessel_of_recording_file(next(iter(runs.values())), vessel_name, ())
+    rate = priors.downsampling_rate(vessel)
     found = {}
     for name, path in runs.items():
         recording = completed(name, loading.open_recording(path, vessel_name, ())[0])

@@ -51,27 +51,29 @@ class _Compared:
         return 0.0
 
     @property
-    def sds(self) -> float:
+    def significance(self) -> float:
         """Number of standard deviations by which the correlation differs from none."""
         c = self.correlation
-        return c * float(np.sqrt((self.count - 2.0) / max(1.0 - c * c, 1e-9)))
+        return c * float(np.sqrt((self.effective_sample_size - 2.0) / max(1.0 - c * c, 1e-9)))
 
     @property
-    def count(self) -> float:
+    def effective_sample_size(self) -> float:
         """Number of stretches of equal weight that would be as informative."""
         return float(self.weight.sum() ** 2 / (self.weight**2).sum())
 
-    def ratio(self) -> tuple[float, float]:
+    def velocity_gain(self) -> tuple[float, float]:
         """Gain of the velocities for which both rates agree on average, and its sd."""
         ratio = self.track / self.turning
         middle = _mean(ratio, self.weight)
-        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.count))
+        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.effective_sample_size))
         return middle, sd
 
-    def level(self) -> tuple[float, float]:
+    def mean_clock_rate(self) -> tuple[float, float]:
         """Mean clock rate by the heading, and its sd."""
         middle = _mean(self.turning, self.weight)
-        sd = float(np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.count))
+        sd = float(
+            np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.effective_sample_size)
+        )
         return middle, sd
 
 
@@ -101,11 +103,11 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     compared = _compare(long, config)
     if compared is None:
         return []
-    gain, gain_sd = compared.ratio()
+    gain, gain_sd = compared.velocity_gain()
     wrong_gain = abs(gain - 1.0) > max(config.clock_min_gain, config.clock_gain_sds * gain_sd)
     agree = compared.correlation > config.clock_min_correlation
     found = list[Finding]()
-    if agree and compared.sds > config.clock_min_sds:
+    if agree and compared.significance > config.clock_min_sds:
         found = _wander(examined, gain if wrong_gain else 1.0, compared, config)
     elif not wrong_gain:
         found = _constant_rate(examined, compared, _track_rate(long), config)
@@ -190,7 +192,7 @@ def _constant_rate(
     config: ChecksConfig,
 ) -> list[Finding]:
     """The finding of a clock that runs too fast or too slowly, on straight courses and in turns."""
-    rate, sd = compared.level()
+    rate, sd = compared.mean_clock_rate()
     if abs(rate - 1.0) < max(config.clock_min_rate, config.clock_min_sds * sd):
         return []
     if (everywhere - 1.0) / (rate - 1.0) < 0.5:

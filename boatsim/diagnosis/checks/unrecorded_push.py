@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.cut_recordings import pieces_outside
+from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
@@ -115,7 +115,7 @@ def cut_pushes(
         ((loaded.fitted, fitted), (loaded.held_out, held_out))
     ):
         for recording, own in zip(recordings, pushes, strict=True):
-            pieces = pieces_outside(recording, [(push.begin, push.end) for push in own])
+            pieces = parts_outside_intervals(recording, [(push.begin, push.end) for push in own])
             parts[side] += pieces or [recording]
             if own and pieces:
                 findings.append(push_finding(recording, own))
@@ -141,7 +141,7 @@ def push_finding(recording: Recording, pushes: Sequence[Push]) -> Finding:
     )
 
 
-def without_pushes(
+def recordings_without_pushes(
     loaded: Loaded,
     problem: Problem,
     held_out: Sequence[MappedRecording],

@@ -18,7 +18,7 @@ from boatsim.view.formatting import (
     format_with_sd,
     join_words,
     name_and_unit,
-    words_of_name,
+    name_in_words,
 )
 
 FORCES = {
@@ -107,7 +107,7 @@ def abscissa_label(over: str) -> str:
     if how:
         return _recent_words(how, signal)
     if unit := UNITS.get(over, ""):
-        return f"{FACTORS.get(over, words_of_name(over))} [{unit}]"
+        return f"{FACTORS.get(over, name_in_words(over))} [{unit}]"
     return name_and_unit(over)[0]
 
 
@@ -251,7 +251,7 @@ def _factor(name: str, term: SymbolicTerm) -> str:
     if name in BEYOND:
         speed = name.removeprefix("beyond_")
         limit = format_quantity(term.beyond, UNITS[speed])
-        return f"the excess of {words_of_name(speed)} over {limit}"
+        return f"the excess of {name_in_words(speed)} over {limit}"
     if name.startswith("abs_"):
         return f"the size of {_factor(name.removeprefix('abs_'), term)}"
     if name.startswith("sign_"):
@@ -265,7 +265,7 @@ def _factor(name: str, term: SymbolicTerm) -> str:
             return f"the {average} of {_factor(signal, term)}"
         return f"the deviation of {_factor(signal, term)} from its {average}"
     if name in UNITS:
-        return words_of_name(name)
+        return name_in_words(name)
     return name_and_unit(name)[0]
 
 

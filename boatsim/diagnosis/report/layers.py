@@ -12,7 +12,7 @@ from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedE
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import estimated_number_sd, sd_of_corrected_estimates
-from boatsim.view.formatting import format_parameter, join_words, words_of_name
+from boatsim.view.formatting import format_parameter, join_words, name_in_words
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
 INERTIA_UNIT = "kg m^2"
@@ -206,7 +206,7 @@ def _refined_coefficients(
             continue
         at = free.at[0]
         before = float(recording.values[at])
-        words = _words_of_number(words_of_name(free.effect), free.name)
+        words = _words_of_number(name_in_words(free.effect), free.name)
         unit = _unit(problem, owners[0], free.name)
         number = _Number(words, before, float(after[at]), abs(before) * float(sd), unit)
         yield number.entry(f"{free.effect}.{free.name}")
@@ -221,7 +221,7 @@ def _unit(problem: Problem, owner: str, key: str) -> str:
 
 def _words_of_parameter(effect: Effect, name: str, count: int) -> str:
     """Words for a number: that of the effect if it has only one, else with axis or name."""
-    words = words_of_name(type(effect).type_name()).removesuffix(" error")
+    words = name_in_words(type(effect).type_name()).removesuffix(" error")
     if count == 1 and name not in AXES:
         return words
     return _words_of_number(words, name)
@@ -231,7 +231,7 @@ def _words_of_number(words: str, name: str) -> str:
     """Words for one of several numbers: damping in surge, damping exponent in sway."""
     axis, _, rest = name.partition("_")
     if axis not in AXES:
-        return f"{words}, {words_of_name(name)}"
+        return f"{words}, {name_in_words(name)}"
     if not rest or rest == "factor" or rest in words:
         return f"{words} in {axis}"
-    return f"{words} in {axis}, {words_of_name(rest)}"
+    return f"{words} in {axis}, {name_in_words(rest)}"

@@ -15,7 +15,7 @@ from boatsim.diagnosis.report.figures import (
     signal_panel,
 )
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.view.formatting import format_number, join_words
 from boatsim.view.replay import (
     MARK,
@@ -110,7 +110,7 @@ def _signals_over_time(
 def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
     return (
         f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the "
-        f"{join_words(words_of_models(models))} vessel"
+        f"{join_words(model_names_in_words(models))} vessel"
     )
 
 

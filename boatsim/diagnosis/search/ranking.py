@@ -21,7 +21,10 @@ from boatsim.diagnosis.search.evidence import (
     unexplained_evidence,
     unknown_cause_threshold,
 )
-from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
+from boatsim.diagnosis.search.forward_selection import (
+    refit_from_baseline_noise_levels,
+    select_forward,
+)
 from boatsim.diagnosis.search.group_harm import remove_harm_to_groups
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
@@ -88,10 +91,10 @@ class Ranking:
     @property
     def described_terms(self) -> Mapping[str, SymbolicTerm]:
         """Terms found by symbolic regression that the selected model contains, by name."""
-        return self.description.effects() if self.description else {}
+        return self.description.validated_terms() if self.description else {}
 
     @property
-    def unknown(self) -> bool:
+    def has_unexplained_force_or_cause(self) -> bool:
         """Whether a force or a cause remains that no candidate effect explains."""
         described = self.description is not None or bool(self.divergences)
         return (
@@ -107,7 +110,7 @@ class Ranking:
         return bool(self.left_over > self.told_from) or self.structured
 
 
-def rank(
+def select_and_rank_candidates(
     problem: Problem,
     candidates: tuple[str, ...],
     held_out: Sequence[MappedRecording] = (),
@@ -140,7 +143,7 @@ def rank(
     report("fitting the vessel as written")
     nominal, recalibrated = base or fit_baseline(problem)
     sets = CandidateSets(problem, candidates, recalibrated, report, budget)
-    start = refit_from_base_levels(sets, begin) if begin else recalibrated
+    start = refit_from_baseline_noise_levels(sets, begin) if begin else recalibrated
     best, named = _select(sets, start, held_out)
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
@@ -165,7 +168,7 @@ def rank(
         ),
         structured=_clearly_correlates(sets, correlated, gain, decide.structure_share),
         without=sets.fits_without_each(best),
-        skipped=sets.budget.skipped,
+        skipped=sets.budget.skipped_work_statements,
     )
 
 
@@ -178,9 +181,9 @@ def _select(
     """
     best, named = prune(sets, select_forward(sets, start))
     while True:
-        if sets.budget.spent:
+        if sets.budget.is_spent:
             if best.effects:
-                sets.budget.state(NOT_EXAMINED)
+                sets.budget.record_skipped_trial(NOT_EXAMINED)
             return best, named
         fewer = remove_dwarfed_effect(sets, best, held_out)
         if fewer is best:

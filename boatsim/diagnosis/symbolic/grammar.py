@@ -47,7 +47,7 @@ class Course:
     end: float
 
 
-def terms(
+def candidate_terms(
     vessel: Vessel,
     recordings: Recordings,
     speeds: Mapping[str, Array],
@@ -281,7 +281,7 @@ def _time_range(recordings: Recordings) -> tuple[float, float]:
     return first, max(float(r.times[-1]) for r in recordings)
 
 
-def neighbours(
+def term_variants(
     term: SymbolicTerm, recordings: Recordings, step: float, config: DescribeConfig
 ) -> list[SymbolicTerm]:
     """Return variants of a term of the symbolic regression with slightly changed constants.

@@ -10,7 +10,7 @@ from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.evidence import unexplained_evidence
-from boatsim.diagnosis.symbolic.curves import curve
+from boatsim.diagnosis.symbolic.curves import term_force_curve
 from boatsim.diagnosis.symbolic.grammar import longest_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_term, select_terms
@@ -48,7 +48,7 @@ def describe(
         carries = slot in general.terms and not term.run
         fit = general.fit if carries else found.fit
         value, sd = fit.value(slot, "coefficient")
-        drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
+        drawn = term_force_curve(recordings, term, *found.fit.value(slot, "coefficient"))
         described = term.with_values({"name": slot, "coefficient": value})
         written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
     return Description(

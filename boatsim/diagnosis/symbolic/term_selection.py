@@ -14,7 +14,7 @@ from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
-from boatsim.diagnosis.symbolic.grammar import neighbours, terms
+from boatsim.diagnosis.symbolic.grammar import candidate_terms, term_variants
 from boatsim.diagnosis.symbolic.slots import set_placeholder_term, unused_placeholder
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
@@ -69,10 +69,10 @@ def select_terms(
     report(DESCRIBING)
     config = problem.config
     formula = Formula(best, {})
-    budget = SearchBudget(problem.filtered, config.describe.budget)
+    budget = SearchBudget(problem.work_count, config.describe.budget)
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     while len(formula.terms) < config.describe.most_terms:
-        if formula.terms and budget.spent:
+        if formula.terms and budget.is_spent:
             return replace(formula, complete=False)
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
         trials = _trials(problem, formula, ordered, refused, everywhere)
@@ -92,10 +92,10 @@ def select_terms(
         extended = Formula(found, formula.terms | {trial.slot: term})
         fewer: dict[str, Formula] = {}
         if _replaces_effect(problem, formula, extended, fewer):
-            refused.add(family(trial.scored.term))
+            refused.add(term_family(trial.scored.term))
             continue
         formula = _pruned(problem, extended, fewer)
-        ends = budget.spent and len(formula.terms) < config.describe.most_terms
+        ends = budget.is_spent and len(formula.terms) < config.describe.most_terms
         if len(formula.terms) > 1 and not ends:
             formula = _refine_all(problem, formula, everywhere)
         count, gain = len(formula.terms), found.evidence - best.evidence
@@ -107,7 +107,7 @@ def select_terms(
 def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[ScoredTerm]:
     """Return all terms of the grammar with their approximate evidence."""
     speeds, commands = varying_signals(recordings)
-    grammar = terms(
+    grammar = candidate_terms(
         problem.program.vessel, problem.recordings, speeds, commands, problem.config.describe
     )
     return score_terms(recordings, list(grammar))
@@ -122,8 +122,8 @@ def _trials(
 ) -> list[_Trial]:
     """Fit the formula with each of the best terms."""
     best = []
-    for scored in best_of_each(ordered):
-        if scored.gain > 0.0 and family(scored.term) not in refused:
+    for scored in best_term_of_each_family(ordered):
+        if scored.gain > 0.0 and term_family(scored.term) not in refused:
             best.append(scored)
     trials = []
     for scored in best[: problem.config.describe.fitted_terms]:
@@ -132,7 +132,7 @@ def _trials(
     return trials
 
 
-def family(term: SymbolicTerm) -> Family:
+def term_family(term: SymbolicTerm) -> Family:
     """Return a key that is equal for symbolic terms which differ only in their constants.
 
     The constants are times, wavelength and threshold.
@@ -144,7 +144,7 @@ def family(term: SymbolicTerm) -> Family:
     return type(term), term.of, term.acts, term.run, *place
 
 
-def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
+def best_term_of_each_family(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     """Return the symbolic term with most evidence of each family.
 
     Terms of a family differ only in their times, wavelength or threshold.
@@ -154,7 +154,7 @@ def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     """
     best: dict[Family, ScoredTerm] = {}
     for scored in ordered:
-        best.setdefault(family(scored.term), scored)
+        best.setdefault(term_family(scored.term), scored)
     return list(best.values())
 
 
@@ -174,7 +174,7 @@ def _with_term(
     _write_scored(problem, slot, scored, everywhere)
     base, config = formula.fit, problem.config.fit
     effects = (*base.effects, slot)
-    free = problem.parameters(effects)
+    free = problem.free_parameters(effects)
     known = {}
     for f, x in zip(base.free, base.theta, strict=True):
         known[f.effect, f.name] = x
@@ -196,12 +196,12 @@ def _refined(
     """Refine the times or lengths of the newest term; return the term and the fit with it."""
     config, slot, found = problem.config.describe, trial.slot, trial.fit
     scored = trial.scored
-    if not neighbours(scored.term, problem.recordings, config.coarse_refinement[0], config):
+    if not term_variants(scored.term, problem.recordings, config.coarse_refinement[0], config):
         return scored.term, found
     recordings, best = fitted_recordings(problem, formula.fit), scored
     for step in config.coarse_refinement:
         for _ in range(config.refinement_moves):
-            near = neighbours(best.term, problem.recordings, step, config)
+            near = term_variants(best.term, problem.recordings, step, config)
             moved = score_terms(recordings, near)
             if not moved or moved[0].gain <= best.gain:
                 break
@@ -224,7 +224,7 @@ def _refined_by_filter(
     force with a longer time constant must be stronger.
     """
     config = problem.config.describe
-    if not neighbours(term, problem.recordings, config.fine_refinement[0], config):
+    if not term_variants(term, problem.recordings, config.fine_refinement[0], config):
         return term, found
     for _ in range(config.refinement_turns):
         moved = _moved(problem, slot, term, found, everywhere)
@@ -261,7 +261,7 @@ def _moved(
     best = likelihood(term)
     for step in config.fine_refinement:
         for _ in range(config.refinement_moves):
-            near = neighbours(term, problem.recordings, step, config)
+            near = term_variants(term, problem.recordings, step, config)
             scores = list(map(likelihood, near))
             # the last one of equally likely neighbours
             last = max(range(len(near)), key=lambda i: (scores[i], i))

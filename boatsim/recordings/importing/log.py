@@ -68,7 +68,7 @@ class MemoryBudget:
     def __init__(self, path: Path) -> None:
         self.path, self.values = path, 0
 
-    def take(self, values: int, signals: int = 0) -> None:
+    def count_values(self, values: int, signals: int = 0) -> None:
         """Count values and signals. Raises BadInput for too many."""
         self.values += values
         if self.values > MAX_VALUES:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from html import escape
 
 
-def facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
+def html_facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
     """Return a title and a table of two columns.
 
     Args:
@@ -17,7 +17,7 @@ def facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
     return f"<p><b>{escape(title)}</b></p><table>{''.join(rows)}</table>"
 
 
-def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Return a table with a header; without rows the result is "".
 
     Args:

@@ -16,7 +16,7 @@ from boatsim.diagnosis.report.layers import Layers, classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import console_lines, refined_rows, verdict_sentences
+from boatsim.diagnosis.report.sentences import console_lines, refined_number_rows, verdict_sentences
 from boatsim.physics import vessel
 from boatsim.view.page_blocks import Table
 from tests.diagnosis.report.test_page import planar
@@ -48,7 +48,7 @@ def layers_of(
     mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
     problem = Problem([mapped], levels, {"damping": 1.0, "thrust": 0.3})
-    free = problem.parameters(tuple(FITTED))
+    free = problem.free_parameters(tuple(FITTED))
     theta, sds = [], []
     for f in free:
         value = (coefficients or {}).get((f.effect, f.name), (1.0, 0.01))
@@ -136,9 +136,9 @@ def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path
     assert verdict_sentences(answer).startswith(
         "No missing effect was found: with four numbers of the rough model refined"
     )
-    assert refined_rows(answer)[0][0] == "thrust lag"
-    assert refined_rows(answer)[0][-1] == "not in the file"
-    assert refined_rows(answer)[1][-1] == "+50 %"
+    assert refined_number_rows(answer)[0][0] == "thrust lag"
+    assert refined_number_rows(answer)[0][-1] == "not in the file"
+    assert refined_number_rows(answer)[1][-1] == "+50 %"
     assert replace(findings, answer=answer).has_added_effects
 
 

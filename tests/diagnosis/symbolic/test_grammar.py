@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 
-from boatsim.diagnosis.candidates import diagnosis_program, library_for
+from boatsim.diagnosis.candidates import diagnosis_program, candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import Loaded
@@ -21,7 +21,7 @@ from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.symbolic import grammar
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel
-from boatsim.physics.base import Array, Motion, Wrench, motion
+from boatsim.physics.base import Array, Motion, Wrench, make_motion
 from boatsim.physics.described_laws import EVER
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
@@ -30,7 +30,7 @@ from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording
 
 ACTS = np.array([0.8, -0.4, 0.3, 0.1, cos(0.3), sin(0.3), cos(0.1), sin(0.1)])  # of the trial boat
-AT = motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
+AT = make_motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
 CLOSED: Mapping[str, tuple[dict[str, Any], Callable[[Motion], float]]] = {
     "constant": ({"of": []}, lambda m: 1.0),
     "product": ({"of": ["surge_speed", "yaw_rate"]}, lambda m: m.ur * m.r),
@@ -128,13 +128,13 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
         "of": ["surge_speed", "abs_yaw_rate"],
         "acts": "always",
     }
-    assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
+    assert own.wrench(make_motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
 
 
 def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
-    library = library_for(BOAT)
-    assert not [n for n in library.tested if n.startswith("described")]
-    assert {e.name for e in library.compiled} - {e.name for e in library.entries} == {
+    library = candidate_library(BOAT)
+    assert not [n for n in library.tested_names if n.startswith("described")]
+    assert {e.name for e in library.compiled_effects} - {e.name for e in library.entries} == {
         e.name for e in library.placeholders
     }
     assert not any(

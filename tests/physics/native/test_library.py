@@ -61,7 +61,7 @@ def test_a_program_with_candidates_has_a_c_form_without_the_callback_of_mujoco()
     program = Program(load_vessel("joystick_boat"), candidates=(CommandDelay(),))
     source = translate_program(program.module, "simulation")
     assert "rollout" in source and "passive" not in source
-    assert isinstance(program.simulation, NativeProgram)
+    assert isinstance(program.simulation_functions, NativeProgram)
 
 
 def batch_states(vessel: Vessel) -> np.ndarray:
@@ -106,7 +106,7 @@ def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     found = []
     for switch in ("1", "0"):
         monkeypatch.setenv("BOATSIM_NATIVE", switch)
-        assert isinstance(Program(vessel).simulation, NativeProgram) == (switch == "1")
+        assert isinstance(Program(vessel).simulation_functions, NativeProgram) == (switch == "1")
         found.append(states(vessel))
     assert np.array_equal(*found) and np.ptp(found[0]) > 0.1
 
@@ -115,10 +115,10 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
     program = Program(load_vessel("joystick_boat"))
     k, values, on = np.zeros(program.module.K), program.values(), program.effect_switches()
     commands, memory = program.command_array({"pwm_port": 100.0}), np.zeros(program.memory_size)
-    act = np.zeros(program.held_size)
-    program.simulation.compute_mass_constants(program.body, values, on, k)
+    act = np.zeros(program.actuator_signal_size)
+    program.simulation_functions.compute_mass_constants(program.body, values, on, k)
     found = []
-    for code in (program.simulation, program.module):
+    for code in (program.simulation_functions, program.module):
         memory[:] = act[:] = 0.0
         advance = partial_call(code, "advance_actuators", commands, memory, ..., values, on, act)
         y = np.zeros(2 * program.module.NQ)
@@ -136,17 +136,17 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
 
 def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> None:
     program = Program(load_vessel("joystick_boat"))
-    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
+    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.actuator_signal_size)
     given = 0.0, y, act, np.int64(0), program.values(), program.effect_switches()
-    force = partial_call(program.simulation, "total_body_force", *given)
+    force = partial_call(program.simulation_functions, "total_body_force", *given)
     for speed in (0.5, 1.0):
         y[program.module.NQ] = speed
-        assert force() == program.simulation.total_body_force(*given)
+        assert force() == program.simulation_functions.total_body_force(*given)
     assert force()[0] < 0.0  # resistance
 
 
 def test_an_array_of_another_type_is_refused() -> None:
-    code = Program(load_vessel("joystick_boat")).simulation
+    code = Program(load_vessel("joystick_boat")).simulation_functions
     with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):
         code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
 
@@ -155,13 +155,13 @@ def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
     tmp_path: Path,
 ) -> None:
     program = Program(box_in_measured_wave(tmp_path))
-    assert isinstance(program.functions, NativeProgram)
+    assert isinstance(program.estimation_functions, NativeProgram)
     vessel = program.vessel
     wave = vessel.inputs.index("wave_m")
     found: list[Any] = []
-    for code in (program.functions, program.module):
+    for code in (program.estimation_functions, program.module):
         values, on = program.values(), program.effect_switches()
-        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
         command = np.zeros(len(vessel.inputs))
         code.settle_actuators(command, memory, values, on, act)
         rows = []
@@ -185,7 +185,7 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
     for switch in ("1", "0"):
         monkeypatch.setenv("BOATSIM_NATIVE", switch)
         program, _ = diagnosis_program(vessel)
-        assert isinstance(program.functions, NativeProgram) == (switch == "1")
+        assert isinstance(program.estimation_functions, NativeProgram) == (switch == "1")
         levels = prior_noise_levels(vessel, [cruise(vessel)])
         mapped = map_recording(cruise(vessel), program)
         problem = Problem([mapped], levels, {})
@@ -232,4 +232,4 @@ def test_without_a_compiler_the_program_is_that_of_numba(
     else:
         monkeypatch.setenv("CC", str(refusing if case == "fails" else tmp_path / "none"))
     program = Program(load_vessel("kvlcc2_roll"))
-    assert program.functions is program.simulation is program.module
+    assert program.estimation_functions is program.simulation_functions is program.module

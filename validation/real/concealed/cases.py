@@ -80,7 +80,7 @@ def planar_opener(
             path = RECORDINGS / name / "runs" / f"{run}.csv"
             whole, vessel = loading.open_recording(path, patched or published, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
-            rate = priors.used_sample_rate(vessel)
+            rate = priors.downsampling_rate(vessel)
             thin = altered.thinned(min(rate, hertz or rate))
             runs.append(replace(clean_recording(thin, vessel), name=run))
         return split(runs[: len(fitted)], runs[len(fitted) :], vessel)
@@ -117,7 +117,7 @@ def _release(
 ) -> tuple[list[Recording], Vessel]:
     path = kvlcc2_roll_decay.DATA / f"{name}.csv"
     whole, vessel = loading.open_recording(path, patched, ())
-    return cut(replace(alter(whole).thinned(priors.used_sample_rate(vessel)), name=name)), vessel
+    return cut(replace(alter(whole).thinned(priors.downsampling_rate(vessel)), name=name)), vessel
 
 
 ESSO_FITTED = ("random_0806_1624_4", "zigzag_0731_1350")
@@ -138,7 +138,7 @@ def open_esso_osaka(patched: str | None, alter: Alteration) -> Loaded:
         stretches = esso_osaka_pond.sound_stretches(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
         part = alter(longest.between(longest.t[0], longest.t[0] + ESSO_LONGEST))
-        thin = drop_position_outliers(part.thinned(priors.used_sample_rate(vessel)), vessel)
+        thin = drop_position_outliers(part.thinned(priors.downsampling_rate(vessel)), vessel)
         found.append(replace(thin, name=run))
     return split(found[:-1], found[-1:], vessel)
 
