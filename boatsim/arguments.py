@@ -202,9 +202,7 @@ def integer_array(argument: str, value: object) -> NDArray[np.int64]:
     try:
         whole = np.asarray(value)
     except (TypeError, ValueError):
-        raise BadInput(
-            f"{argument} = {shown(value)}; allowed are whole numbers"
-        ) from None
+        raise BadInput(f"{argument} = {shown(value)}; allowed are whole numbers") from None
     if whole.dtype.kind in "iu" and (not whole.size or whole.max() <= LARGEST_WHOLE):
         return whole.astype(np.int64)
     given = float_array(argument, value)

@@ -3,11 +3,11 @@
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import Sense, HelmManoeuvre
 
 
 @dataclass
-class CrashStop(Steered):
+class CrashStop(HelmManoeuvre):
     """Crash stop manoeuvre: commands the engines astern until the ship has stopped."""
 
     words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has stopped"

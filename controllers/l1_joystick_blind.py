@@ -6,7 +6,7 @@ from math import cos, degrees, nan, sin
 from typing import ClassVar
 
 from boatsim.control.adaptive import LoopChannel
-from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, Setting
+from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, OutboardSetting
 from boatsim.control.base import Estimate, Sense, clip, wrap
 from boatsim.control.joystick import AdaptiveJoystick
 from boatsim.control.motor_check import PORT, STARBOARD, Drift, MotorCheck, Pulse
@@ -198,7 +198,9 @@ class L1JoystickBlind(AdaptiveJoystick):
     def _dead_reckon(self, commands: Mapping[str, float], stick: float) -> None:
         """Advance reckoned speed and distance by one period."""
         pwm = int(commands["pwm_port"]), int(commands["pwm_starboard"])
-        push = self.wrench_for_commands(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
+        push = self.wrench_for_commands(
+            OutboardSetting(*pwm, round(degrees(commands["steer_port_rad"])))
+        )
         self._u += self.period * self._scale * push.X / self.mass
         self._x += self.period * (self._u - stick)
 

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import Sense, HelmManoeuvre
 from boatsim.physics.base import param
 
 
 @dataclass
-class PullOut(Steered):
+class PullOut(HelmManoeuvre):
     """Pull-out manoeuvre: helm to one side, midships, to the other side, midships.
 
     Each part is held for the same time.

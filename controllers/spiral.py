@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import Sense, HelmManoeuvre
 from boatsim.physics.base import param
 
 
 @dataclass
-class Spiral(Steered):
+class Spiral(HelmManoeuvre):
     """Dieudonne's spiral manoeuvre: the helm moves in steps from side to side and back.
 
     It shows whether a ship has two rates of turn at one helm angle.

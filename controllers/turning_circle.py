@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import Sense, HelmManoeuvre
 
 
 @dataclass
-class TurningCircle(Steered):
+class TurningCircle(HelmManoeuvre):
     """Turning circle manoeuvre: holds a helm angle to the end of the run."""
 
     words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"

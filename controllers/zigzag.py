@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 from math import copysign, inf
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import Sense, HelmManoeuvre
 from boatsim.physics.base import param
 
 REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached
 
 
 @dataclass
-class Zigzag(Steered):
+class Zigzag(HelmManoeuvre):
     """Kempf's zig-zag manoeuvre about the heading at the start.
 
     A positive angle begins to starboard.

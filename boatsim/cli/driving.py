@@ -12,7 +12,7 @@ from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
 from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.server import Server
 from boatsim.drive.session import NothingDriven, Session, output_folder_name
-from boatsim.drive.task import FILE, Task
+from boatsim.drive.task import FILE, DriveTask
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.view.run_observers import page_observer, rerun_observers
@@ -21,7 +21,7 @@ from boatsim.view.viewer import has_display
 
 
 def drive_vessel(
-    task: Task, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
+    task: DriveTask, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> int:
     """Let a user drive a vessel from a web page until the user stops; print metrics and timing.
 
@@ -49,7 +49,7 @@ def drive_vessel(
 
 
 def _drive(
-    task: Task, folder: Path, browser: bool | None, port: int, viewer: ViewerOptions | None
+    task: DriveTask, folder: Path, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> tuple[RunEntry, Session]:
     """Let a user drive; return the content of norms.json, and the session."""
     with ExitStack() as stack:

@@ -96,7 +96,7 @@ class Push(NamedTuple):
     N: float  # [N m]
 
 
-class Setting(NamedTuple):
+class OutboardSetting(NamedTuple):
     """Commands of two outboards: integer PWM of the motors and integer degrees of the servos."""
 
     pwm_port: int
@@ -437,7 +437,7 @@ class Outboards(CheckedParameters):
         """
         return thrust_at_pwm(self.nominal_properties, pwm)
 
-    def commands_for_thrusts(self, drive: Drive) -> Setting:
+    def commands_for_thrusts(self, drive: Drive) -> OutboardSetting:
         """Return the PWM and servo commands for thrusts and angle of the outboards.
 
         They are rounded, and limited to what motors and servos accept.
@@ -445,7 +445,7 @@ class Outboards(CheckedParameters):
         Args:
             drive: Thrusts and angle of the outboards.
         """
-        return Setting(
+        return OutboardSetting(
             self.pwm_for_thrust(drive.port),
             self.pwm_for_thrust(drive.starboard),
             round(degrees(drive.angle)),
@@ -461,7 +461,7 @@ class Outboards(CheckedParameters):
             *nominal_wrench(self.nominal_properties, drive.port, drive.starboard, drive.angle)
         )
 
-    def wrench_for_commands(self, setting: Setting) -> Push:
+    def wrench_for_commands(self, setting: OutboardSetting) -> Push:
         """Return the nominal force and yaw moment of the outboards under given commands.
 
         They are the input of a state predictor.

@@ -103,7 +103,7 @@ class Controller(CheckedParameters):
 
 
 @dataclass
-class Steered(Controller):
+class HelmManoeuvre(Controller):
     """Base class of controllers for standard manoeuvres: an approach ahead, then helm angles.
 
     `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns

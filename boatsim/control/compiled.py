@@ -151,7 +151,7 @@ class CompiledController(Controller):
 
     @property
     def single_memory_record(self) -> Any:
-        """State of the controller as a single record."""
+        """State (memory) of the controller as one numpy record, the only one of `memory`."""
         return self._memory[0]
 
 

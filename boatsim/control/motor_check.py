@@ -53,7 +53,7 @@ class Found(NamedTuple):
 
 
 @dataclass
-class Train:
+class PulseTrain:
     """Train of thrust pulses of a motor check, and the sensor readings during it.
 
     The motors rest between the pulses and all pulses have the same length, so that the transients
@@ -200,7 +200,7 @@ class MotorCheck:
         length = self.shortest
         for pair in range(self.most):
             for side in (PORT, STARBOARD):
-                train = Train(round(length / self.period), round(self.rest / self.period))
+                train = PulseTrain(round(length / self.period), round(self.rest / self.period))
                 for sense in train.senses:
                     train.add_imu_readings(*self._reading)
                     yield Pulse(sense, side)

@@ -44,7 +44,7 @@ PLACEHOLDERS = {
 
 
 @dataclass(frozen=True)
-class Library:
+class CandidateLibrary:
     """Candidate effects of one diagnosis: those tested, those excluded, and the reasons.
 
     A candidate effect is a force, actuator fault or sensor error that the vessel model may lack.
@@ -88,7 +88,7 @@ def candidate_library(
     own: Sequence[str] = (),
     facts: Mapping[str, object] | None = None,
     columns: Sequence[str] | None = None,
-) -> Library:
+) -> CandidateLibrary:
     """Return the candidate effects that a diagnosis may test on a vessel.
 
     Effects that cannot act on the vessel are left out. Effects excluded by a fact, by the vessel
@@ -143,7 +143,9 @@ def candidate_library(
                 excluded[effect.name] = reason
     together = replace(vessel, effects=(*vessel.effects, *entries.values()))
     check_bindings(together, f"{vessel.name}: library")
-    return Library(tuple(entries.values()), placeholder_effects(vessel), excluded, inapplicable)
+    return CandidateLibrary(
+        tuple(entries.values()), placeholder_effects(vessel), excluded, inapplicable
+    )
 
 
 def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
@@ -352,7 +354,7 @@ def instantiate_neutral_effect(
     return kind.from_settings(settings | dict(given or {}))
 
 
-def candidate_names_except(library: Library, without: Sequence[str]) -> tuple[str, ...]:
+def candidate_names_except(library: CandidateLibrary, without: Sequence[str]) -> tuple[str, ...]:
     """Return the names of the tested candidate effects except the given ones.
 
     The excluded effects stay in the compiled program, so that nothing has to be compiled again.

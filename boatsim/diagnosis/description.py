@@ -35,7 +35,7 @@ class FittedTerm:
 
 
 @dataclass(frozen=True)
-class Description:
+class SymbolicDescription:
     """Formula that symbolic regression found for a force that no candidate effect explains.
 
     It contains all terms, and the fit with those terms that also hold for held-out recordings.

@@ -124,7 +124,7 @@ class ParameterSpace:
         self.mean, self.sd, self.low, self.high = prior_arrays(free)
 
     def clip(self, theta: Array) -> Array:
-        """Return parameter values (F,) limited to their bounds."""
+        """Return the values (F,) of the F free parameters, each limited to its bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
     def damped_step(self, theta: Array, A: Array, g: Array, damping: float) -> Array:

@@ -41,7 +41,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Loaded:
+class LoadedRecordings:
     """Cleaned recordings, divided into fitted and held-out ones, with vessels and findings."""
 
     fitted: Sequence[Recording]
@@ -62,7 +62,7 @@ class Loaded:
 
 def load(
     request: Request, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
-) -> Loaded:
+) -> LoadedRecordings:
     """Read, check and clean the recordings of a diagnosis, and hold some of them out.
 
     Args:
@@ -113,7 +113,7 @@ def load(
         remarks += clean.remarks
     findings += check_clock_rate(opened, config.checks)
     fitted, held_out, note = split_recordings(cleaned[:first], cleaned[first:])
-    return Loaded(
+    return LoadedRecordings(
         fitted,
         held_out,
         by_path,

@@ -13,7 +13,7 @@ from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_of_recording_file
+from boatsim.diagnosis.loading import LoadedRecordings, check_same_vessel, vessel_of_recording_file
 from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.errors import BadInput
@@ -68,7 +68,7 @@ def check_files(
     if usable:
         try:
             widened = {path: widen_channel_ranges(own, usable) for path, own in vessels.items()}
-            loaded = Loaded(usable, (), widened, "")
+            loaded = LoadedRecordings(usable, (), widened, "")
             question = set_up_estimation_problem(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             if not compared:

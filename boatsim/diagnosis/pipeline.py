@@ -29,7 +29,7 @@ from boatsim.diagnosis.divergence import has_diverged
 from boatsim.diagnosis.evaluation import Evaluation, evaluate
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Fit, Problem
@@ -52,7 +52,7 @@ from boatsim.diagnosis.search.ranking import (
     select_and_rank_candidates,
 )
 from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
 from boatsim.physics.program import Program
@@ -156,7 +156,7 @@ def diagnose(
 
 
 def diagnose_loaded(
-    loaded: Loaded, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
+    loaded: LoadedRecordings, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> Diagnosis:
     """Diagnose recordings that have been read: find and fit effects that the vessel model lacks.
 
@@ -194,7 +194,11 @@ def diagnose_loaded(
 
 
 def _fit_and_select(
-    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float, report: Report
+    loaded: LoadedRecordings,
+    question: Question,
+    findings: Sequence[Finding],
+    begin: float,
+    report: Report,
 ) -> Diagnosis | None:
     """Run all stages after the checks; None if the vessel's own fit does not follow."""
     base = fit_baseline_models(question)
@@ -220,7 +224,7 @@ def _fit_and_select(
 
 
 def _diagnose_without_fit(
-    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float
+    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], begin: float
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
@@ -243,7 +247,7 @@ class Stages(NamedTuple):
 
 
 def _compose(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     findings: Sequence[Finding],
     stages: Stages,
@@ -275,7 +279,7 @@ def _is_finite(answer: Answer) -> bool:
     return True
 
 
-def check_recordings(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
+def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Finding, ...]:
     """Return all findings of the quality checks of the recordings.
 
     Findings of single files are completed by faults that only a comparison with the vessel model
@@ -296,8 +300,8 @@ def check_recordings(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
 
 
 def cut_unrecorded_pushes(
-    loaded: Loaded, question: Question, found: Fit
-) -> tuple[Loaded, Question]:
+    loaded: LoadedRecordings, question: Question, found: Fit
+) -> tuple[LoadedRecordings, Question]:
     """Cut short forces that no channel records out of recordings in which forces were measured.
 
     Args:
@@ -315,7 +319,9 @@ def cut_unrecorded_pushes(
     return kept, set_up_estimation_problem(kept, question.problem.config)
 
 
-def find_ignored_commands(loaded: Loaded, question: Question, base: Baseline) -> list[Finding]:
+def find_ignored_commands(
+    loaded: LoadedRecordings, question: Question, base: Baseline
+) -> list[Finding]:
     """Return findings about times in which the motion shows nothing of the commands.
 
     Args:
@@ -341,7 +347,7 @@ def fit_baseline_models(question: Question) -> Baseline:
 
 
 def select_candidates(
-    question: Question, base: Baseline, loaded: Loaded, report: Report = ignore_progress
+    question: Question, base: Baseline, loaded: LoadedRecordings, report: Report = ignore_progress
 ) -> Selection:
     """Select the candidate effects that the recordings require.
 

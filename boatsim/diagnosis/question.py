@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
-    Library,
+    CandidateLibrary,
     candidate_library,
     candidate_names_except,
     with_specified_position_drift,
@@ -24,7 +24,7 @@ from boatsim.diagnosis.filter import (
     relative_noise,
     shared_noise,
 )
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.near_track import small_track_fact
 from boatsim.diagnosis.problem import Problem, check_uncertainty
@@ -66,12 +66,12 @@ class Question:
     problem: Problem
     held_out: tuple[MappedRecording, ...]
     map_recording: Callable[[Recording], MappedRecording]
-    library: Library
+    library: CandidateLibrary
     candidates: tuple[str, ...]  # names of the effects that are tested
 
 
 def set_up_estimation_problem(
-    loaded: Loaded, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
+    loaded: LoadedRecordings, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
 ) -> Question:
     """Set up the estimation problem of a diagnosis from recordings that have been read.
 
@@ -91,7 +91,7 @@ def set_up_estimation_problem(
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
     track = small_track_fact([*loaded.fitted, *loaded.held_out], vessel, config.load)
-    libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
+    libraries, programs = dict[Path | None, CandidateLibrary](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
         libraries[path] = candidate_library(known, loaded.library, {**facts, **track}, columns)
@@ -112,7 +112,9 @@ def set_up_estimation_problem(
     return Question(problem, tuple(held_out), mapper, library, names)
 
 
-def _uncertainty(loaded: Loaded, vessel: Vessel, config: DiagnosisConfig) -> dict[str, float]:
+def _uncertainty(
+    loaded: LoadedRecordings, vessel: Vessel, config: DiagnosisConfig
+) -> dict[str, float]:
     """Relative prior sd of coefficients by kind. Raises BadInput."""
     uncertainty = priors.coefficient_uncertainty(vessel, config.load)
     where = f"{vessel.file.parent.name}/{vessel.file.name}: diagnosis"

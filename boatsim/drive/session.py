@@ -8,7 +8,7 @@ from pathlib import Path
 from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
 from boatsim.drive.server import Server
-from boatsim.drive.task import FILE, Task
+from boatsim.drive.task import FILE, DriveTask
 from boatsim.drive.telemetry import PageData
 from boatsim.errors import BoatsimError
 from boatsim.recordings.table import Recording
@@ -45,7 +45,7 @@ class Session:
     """
 
     def __init__(
-        self, task: Task, server: Server, notify: Callable[[str], None], watched: bool = False
+        self, task: DriveTask, server: Server, notify: Callable[[str], None], watched: bool = False
     ) -> None:
         """Create a session.
 

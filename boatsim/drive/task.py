@@ -35,7 +35,7 @@ TASK_KEYS = (
 Goals = Sequence[tuple[float, Mapping[str, float] | None]]
 
 
-class Task:
+class DriveTask:
     """Scenario of a run that a driver steers, with its vessel and the mapping of the sticks.
 
     Attributes:

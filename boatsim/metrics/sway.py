@@ -47,7 +47,7 @@ class Sway(CameraMetricSet):
     )
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Explain in words that a boat moved too little to starboard, with the distance reached."""
+        """Explain in words that a boat never moved the required distance to starboard."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
         aside = np.cos(psi) * dy - np.sin(psi) * dx
         return f"{describe_closest_value(aside, self.distance, 'm')} to starboard"

@@ -296,9 +296,7 @@ class CheckedParameters:
                 raise BadInput(unknown_name_message(f"{cls.__name__}: setting", str(key), types))
             allowed = _wrong_type(value, types[key])
             if allowed:
-                raise BadInput(
-                    f"{cls.__name__}: {key} = {shown(value)}; allowed is {allowed}"
-                )
+                raise BadInput(f"{cls.__name__}: {key} = {shown(value)}; allowed is {allowed}")
         return cls(**settings)
 
     def __post_init__(self) -> None:

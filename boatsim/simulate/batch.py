@@ -462,9 +462,7 @@ class Batch:
         except ValueError:  # rows of different lengths
             given = np.zeros((0, 0))
         if given.ndim > 1:
-            raise BadInput(
-                f"boats = {shown(boats)}; allowed are numbers or a mask of boats"
-            )
+            raise BadInput(f"boats = {shown(boats)}; allowed are numbers or a mask of boats")
         if given.dtype == bool:
             if given.shape != (self.n,):
                 raise BadInput(f"boats is a mask of shape {given.shape}; allowed is ({self.n},)")
@@ -507,9 +505,7 @@ class Batch:
             for name, value in commands.items():
                 _check_command(vessel, name, value)
                 if np.ndim(value) > 0:
-                    raise BadInput(
-                        f"commands: {name} = {shown(value)}; allowed is one number"
-                    )
+                    raise BadInput(f"commands: {name} = {shown(value)}; allowed is one number")
             return clipped_commands(vessel, commands)
         given, width = float_array("commands", commands), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)

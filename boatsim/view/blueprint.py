@@ -66,11 +66,7 @@ def sample_style(boat: str, colour: Colour) -> rr.SeriesPoints:
 
 
 def missing_force_style(name: str, flagged: Colour) -> rr.SeriesLines:
-    """Return the style of a curve of a missing force, of its band, or of its flagged part.
-
-    Args:
-        name: Column of the curve; its ending distinguishes the three.
-        flagged: Colour of the flagged part.
+    """Return the style of a missing-force curve: the force, its 2-sd band, or its flagged part.
 
     Args:
         name: Column of the curve; its ending distinguishes the three.

@@ -24,7 +24,7 @@ Settings = Mapping[str, object]
 
 
 def run_facts(scenario: Scenario, result: RunEntry) -> list[tuple[str, str]]:
-    """Return what was run, as pairs of a label and a text.
+    """Return the facts of a run for its page (vessel, controller, water, seed), label and text each.
 
     Args:
         scenario: The scenario.

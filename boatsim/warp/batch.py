@@ -9,7 +9,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 from boatsim.warp.on_mujoco import MujocoMotion
 from boatsim.warp.standalone import StandaloneMotion
 
@@ -59,7 +59,9 @@ class Batch(batch.Batch):
         self._double = double
         self._numbers = np.zeros(0, dtype=np.int64)  # (n,) number of each boat's vessel
         super().__init__(vessels, n, step, seeds=seeds)
-        self._there = Boats(self.program, self.n, step, device, "float64" if double else "float32")
+        self._there = DeviceBoats(
+            self.program, self.n, step, device, "float64" if double else "float32"
+        )
         self.motion: MujocoMotion | StandaloneMotion = (
             MujocoMotion(self._there, self.vessels) if mujoco else StandaloneMotion(self._there)
         )

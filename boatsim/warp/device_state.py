@@ -11,7 +11,7 @@ from boatsim.warp import program as programs
 from boatsim.warp.runtime import find_device, import_warp
 
 
-class Boats:
+class DeviceBoats:
     """Arrays of a batch of boats on a Warp device, with the program whose kernels use them.
 
     Each array has one row for each boat.

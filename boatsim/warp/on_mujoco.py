@@ -17,7 +17,7 @@ from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 
 # Stages of a Runge-Kutta step: share of the step; actuators at its begin, middle or end
 STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))
@@ -33,7 +33,7 @@ IDLE = (
 class MujocoMotion:
     """Motion of a batch of boats on mujoco_warp: each boat is a world of one MuJoCo model."""
 
-    def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
+    def __init__(self, boats: DeviceBoats, vessels: Sequence[Vessel]) -> None:
         """Build the models.
 
         Args:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.physics.signals import Array
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 
 
 class StandaloneMotion:
@@ -13,7 +13,7 @@ class StandaloneMotion:
     It holds joint coordinates and rates of all boats.
     """
 
-    def __init__(self, boats: Boats) -> None:
+    def __init__(self, boats: DeviceBoats) -> None:
         self.boats = boats
         self._y = boats.zeros_per_boat(2 * boats.code.NQ)
         self._none = boats.copy_to_device(np.zeros(boats.code.NQ))

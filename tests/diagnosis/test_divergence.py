@@ -10,7 +10,7 @@ from pushed_boat import BOAT, laid, sail
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.divergence import divergences, has_diverged, raise_latent_force_level
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.missing_force import residual_force
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.errors import BadInput
@@ -35,7 +35,7 @@ def wrapped(recording: Recording) -> Recording:
     return replace(recording, signals={**recording.signals, "psi_rad": psi})
 
 
-def loaded(folder: Path, recordings: list[Recording]) -> Loaded:
+def loaded(folder: Path, recordings: list[Recording]) -> LoadedRecordings:
     paths = []
     for recording in recordings:
         paths.append(folder / f"{recording.name}.csv")

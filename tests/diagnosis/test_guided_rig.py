@@ -16,7 +16,7 @@ from boatsim.diagnosis.checks.rest import intervals_at_rest
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording
 from boatsim.diagnosis.input_noise import input_noise_density, interpolate_measured_inputs
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, TimedCommands
@@ -58,7 +58,7 @@ def recording(seed: int, seconds: float, push: bool) -> Recording:
 def test_the_diagnosis_names_the_friction_and_the_gain_and_reports_the_push() -> None:
     runs = [recording(1, 20.0, True).thinned(31.0), recording(2, 20.0, False).thinned(31.0)]
     held_out = recording(3, 15.0, False).thinned(31.0)
-    loaded = Loaded(runs, [held_out], {FILE: PENDULUM}, "run 3", horizon=1.0)
+    loaded = LoadedRecordings(runs, [held_out], {FILE: PENDULUM}, "run 3", horizon=1.0)
     answer = pipeline.diagnose_loaded(loaded).findings.answer
     named = {effect["name"]: effect["parameters"] for effect in answer["effects"]}
     assert set(named) == {"load_gain_error", "dry_friction"}, json.dumps(answer["sentence"])

@@ -10,7 +10,7 @@ from pushed_boat import BOAT, push, sail
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
@@ -28,14 +28,14 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 
 
 @pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("stages") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
     return loading.load(Request([path], vessel=BOAT.name), config=FAST)
 
 
 @pytest.fixture(scope="module")
-def question(loaded: Loaded) -> Question:
+def question(loaded: LoadedRecordings) -> Question:
     return replace(set_up_estimation_problem(loaded, FAST), candidates=(ONLY,))
 
 
@@ -44,7 +44,7 @@ def base(question: Question) -> Baseline:
     return pipeline.fit_baseline_models(question)
 
 
-def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -> None:
+def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: LoadedRecordings) -> None:
     assert [len(part) for part in (loaded.fitted, loaded.held_out)] == [2, 1]
     assert "middle third" in loaded.note
     assert loaded.vessel.name == BOAT.name
@@ -56,7 +56,7 @@ def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -
 
 
 def test_check_finds_nothing_wrong_with_a_sound_recording(
-    loaded: Loaded, question: Question
+    loaded: LoadedRecordings, question: Question
 ) -> None:
     assert not [f for f in pipeline.check_recordings(loaded, question) if f.kind == "fault"]
 
@@ -67,7 +67,7 @@ def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
 
 
 def test_later_stages_take_the_results_of_earlier_ones(
-    loaded: Loaded, question: Question, base: Baseline
+    loaded: LoadedRecordings, question: Question, base: Baseline
 ) -> None:
     selection = pipeline.select_candidates(question, base, loaded)
     assert selection.ranking.recalibrated is base.recalibrated

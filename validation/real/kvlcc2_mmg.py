@@ -20,7 +20,7 @@ from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, converge, gauss_newton
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_latent_force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -183,7 +183,7 @@ def diagnose(
     kept = runs_named(runs, held_out)
     note = ", ".join(held_out)
     fitted = runs_except(runs, held_out)
-    return pipeline.diagnose_loaded(Loaded(fitted, kept, vessels, note, horizon=horizon))
+    return pipeline.diagnose_loaded(LoadedRecordings(fitted, kept, vessels, note, horizon=horizon))
 
 
 # ---- the two tanks

@@ -20,7 +20,7 @@ from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain
@@ -80,7 +80,7 @@ def diagnose_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     parts = windows_of(whole)
     note = f"every second window of {WINDOW:g} s"
     return pipeline.diagnose_loaded(
-        Loaded(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
+        LoadedRecordings(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
     )
 
 
@@ -89,7 +89,7 @@ def diagnose_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diag
     parts = thirds_of(whole)
     kept = parts.pop(held_out)
     return pipeline.diagnose_loaded(
-        Loaded(parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON)
+        LoadedRecordings(parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON)
     )
 
 

@@ -27,7 +27,7 @@ SPEEDS = ("u_mps", "v_mps")
 
 
 @dataclass(frozen=True)
-class _Compared:
+class _RateComparison:
     """Clock rates by the track and by the heading over turning stretches of all recordings.
 
     Attributes:
@@ -116,7 +116,7 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     return found
 
 
-def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _Compared | None:
+def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _RateComparison | None:
     """Both clock rates over turning stretches; None if these are too few."""
     track, turning, weight = list[Array](), list[Array](), list[Array]()
     for run in runs:
@@ -128,20 +128,20 @@ def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _Compared | Non
         weight.append(run.turned[used] ** 2)
     if sum(map(len, track)) < config.clock_min_stretches:
         return None
-    found = _Compared(*map(np.concatenate, (track, turning, weight)))
+    found = _RateComparison(*map(np.concatenate, (track, turning, weight)))
     usual = np.median(found.weight)
-    found = _Compared(found.track, found.turning, np.minimum(found.weight, usual))
+    found = _RateComparison(found.track, found.turning, np.minimum(found.weight, usual))
     if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
         return _without_contradictions(found, config)
     return found
 
 
-def _without_contradictions(found: _Compared, config: ChecksConfig) -> _Compared | None:
+def _without_contradictions(found: _RateComparison, config: ChecksConfig) -> _RateComparison | None:
     """The stretches in which heading and yaw rate agree in their sense."""
     same = found.turning > 0.0
     if same.sum() < max(config.clock_min_stretches, 0.9 * len(same)):
         return None
-    return _Compared(found.track[same], found.turning[same], found.weight[same])
+    return _RateComparison(found.track[same], found.turning[same], found.weight[same])
 
 
 def _track_rate(runs: Sequence[Stretches]) -> float:
@@ -151,7 +151,7 @@ def _track_rate(runs: Sequence[Stretches]) -> float:
 
 
 def _wander(
-    recordings: Sequence[Recording], gain: float, compared: _Compared, config: ChecksConfig
+    recordings: Sequence[Recording], gain: float, compared: _RateComparison, config: ChecksConfig
 ) -> list[Finding]:
     """The finding of an uneven clock in each recording."""
     runs = [motion_stretches(recording.t, recording.signals) for recording in recordings]
@@ -187,7 +187,7 @@ def _wander(
 
 def _constant_rate(
     recordings: Sequence[Recording],
-    compared: _Compared,
+    compared: _RateComparison,
     everywhere: float,
     config: ChecksConfig,
 ) -> list[Finding]:

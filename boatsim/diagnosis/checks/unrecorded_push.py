@@ -15,7 +15,7 @@ from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -100,8 +100,8 @@ def _intervals(excess: Array, t: Array, config: ChecksConfig) -> list[NDArray[np
 
 
 def cut_pushes(
-    loaded: Loaded, fitted: Sequence[Sequence[Push]], held_out: Sequence[Sequence[Push]]
-) -> Loaded:
+    loaded: LoadedRecordings, fitted: Sequence[Sequence[Push]], held_out: Sequence[Sequence[Push]]
+) -> LoadedRecordings:
     """Return the recordings without the rows of their pushes, and a finding for each recording.
 
     Args:
@@ -142,11 +142,11 @@ def push_finding(recording: Recording, pushes: Sequence[Push]) -> Finding:
 
 
 def recordings_without_pushes(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     problem: Problem,
     held_out: Sequence[MappedRecording],
     fit: Fit,
-) -> Loaded | None:
+) -> LoadedRecordings | None:
     """Return recordings without pushes, or None if there are none or no force was measured.
 
     Args:

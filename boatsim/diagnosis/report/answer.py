@@ -11,7 +11,7 @@ from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.config import AnswerConfig, settings_by_name
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import find_missing_force_conditions
 from boatsim.diagnosis.locate.residual_structure import Structure
@@ -24,7 +24,7 @@ from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unc
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.incomplete import incomplete_sentence
-from boatsim.diagnosis.report.layers import classify_effects
+from boatsim.diagnosis.report.effect_groups import classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
     Acting,
@@ -55,7 +55,7 @@ NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of
 
 
 def compose_answer(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     findings: Sequence[Finding],
     decision: Decision,
@@ -81,8 +81,8 @@ def compose_answer(
     entries = {}
     for identified in ranking.named:
         entries[identified.name] = _effect(problem, ranking.best, identified, decision)
-    layers = classify_effects(problem, ranking.best, entries)
-    possible = layers.also_possible
+    groups = classify_effects(problem, ranking.best, entries)
+    possible = groups.also_possible
     for identified in ranking.doubtful:
         possible.append(_possible(problem, ranking.best, identified, decision))
     formulas = described_entries(ranking.description, vessel)
@@ -93,12 +93,12 @@ def compose_answer(
             problem, fitted, name
         )
     answer: Answer = {
-        "verdict": _verdict(ranking, layers.effects, bool(formulas)),
+        "verdict": _verdict(ranking, groups.effects, bool(formulas)),
         "sentence": "",
         "seconds": round(seconds, 3),
         "version": version(),
-        "effects": layers.effects,
-        "refined": layers.refined,
+        "effects": groups.effects,
+        "refined": groups.refined,
         "also_possible": possible,
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
@@ -198,7 +198,7 @@ def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereE
     return entry
 
 
-def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
+def _log(loaded: LoadedRecordings, findings: Sequence[Finding]) -> list[LogEntry]:
     """Return the problems of the recordings."""
     by_file = {str(path): vessel for path, vessel in loaded.vessels.items()}
     entries = []

@@ -4,7 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import groupby
 
-from boatsim.diagnosis.description import Description, FittedTerm
+from boatsim.diagnosis.description import SymbolicDescription, FittedTerm
 from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
 from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
@@ -47,7 +47,9 @@ TURNING = ("roll", "pitch", "yaw")
 FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
-def described_entries(description: Description | None, vessel: Vessel) -> list[DescribedEntry]:
+def described_entries(
+    description: SymbolicDescription | None, vessel: Vessel
+) -> list[DescribedEntry]:
     """Return the formulas found by symbolic regression in the form used in diagnosis.json.
 
     Args:

@@ -8,7 +8,7 @@ from boatsim.diagnosis.candidates import FURTHER, REORDERED, base_name
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import dof_in_state_order
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question
@@ -23,7 +23,7 @@ from boatsim.physics.vessel import Vessel
 
 def collect_findings(
     answer: Answer,
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     problem: Problem,
     ranking: Ranking,
@@ -70,7 +70,7 @@ def _own_effects(ranking: Ranking) -> frozenset[str]:
     own = set[str]()
     for name in ranking.last:
         if name.removeprefix(REORDERED).startswith(FURTHER):
-            own.add(base_name(name))
+            own.add(name_without_prefixes(name))
     return frozenset(own)
 
 
@@ -79,7 +79,7 @@ def _further_gains(ranking: Ranking) -> dict[str, float]:
     gains: dict[str, float] = {}
     for name, fitted in ranking.last.items():
         gain = float(fitted.evidence - ranking.best.evidence)
-        gains[base_name(name)] = max(gain, gains.get(base_name(name), -np.inf))
+        gains[name_without_prefixes(name)] = max(gain, gains.get(name_without_prefixes(name), -np.inf))
     return gains
 
 

@@ -67,7 +67,7 @@ class SearchBudget:
 
     @property
     def skipped_work_statements(self) -> tuple[str, ...]:
-        """Sentences on candidate effects that the search skipped because its budget was spent."""
+        """Clauses on the candidates and trials that the search skipped because its budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
@@ -93,7 +93,7 @@ class SearchBudget:
         self._omitted[how] = number
 
     def record_skipped_trial(self, what: str) -> None:
-        """Record a statement on a trial that the search skipped because its budget is spent.
+        """Record a trial that the search skipped because its budget is spent, as a clause in words.
 
         Args:
             what: A clause, such as "wind was not added".

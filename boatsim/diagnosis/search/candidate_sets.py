@@ -160,7 +160,7 @@ class CandidateSets:
         return not gained and bool(np.all(np.abs(off) < self.config.select.same_maximum))
 
     def gauss_newton_steps_at_assumed_disturbance(self, found: Fit) -> Fit:
-        """Return a few Gauss-Newton steps of a fit with the latent force at its assumed level.
+        """Take a few Gauss-Newton steps of one fit, its latent force at most at the assumed level.
 
         Args:
             found: Fit of the vessel model with some candidate effects.

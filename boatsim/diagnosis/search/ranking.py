@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
-from boatsim.diagnosis.description import Description
+from boatsim.diagnosis.description import SymbolicDescription
 from boatsim.diagnosis.divergence import Divergence
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
@@ -72,7 +72,7 @@ class Ranking:
     told_from: float  # [nats] of `unexplained_evidence` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
     without: Mapping[str, Fit]  # fits without one of the identified effects, by its name
-    description: Description | None = None  # symbolic description of it
+    description: SymbolicDescription | None = None  # symbolic description of it
     # where the model loses each recording, if fits diverge; nothing was fitted then
     divergences: tuple[Divergence, ...] = ()
     # effects that the best fit contains, but that are probably stand-ins for an unknown cause

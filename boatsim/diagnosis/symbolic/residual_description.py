@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.description import Description, FittedTerm
+from boatsim.diagnosis.description import SymbolicDescription, FittedTerm
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem
@@ -23,7 +23,7 @@ def describe(
     recalibrated: Fit,
     held_out: Sequence[MappedRecording],
     report: Report = ignore_progress,
-) -> Description | None:
+) -> SymbolicDescription | None:
     """Describe the force that a fit leaves unexplained by a formula, with symbolic regression.
 
     Args:
@@ -40,18 +40,20 @@ def describe(
     if not found.terms:
         return None
     gains = {}
-    for slot in found.terms:
-        gains[slot] = found.fit.evidence - refit_without_term(problem, found, slot).fit.evidence
+    for placeholder in found.terms:
+        gains[placeholder] = (
+            found.fit.evidence - refit_without_term(problem, found, placeholder).fit.evidence
+        )
     general = _general(problem, found, Formula(best, {}), gains, recalibrated, held_out)
     written, recordings = [], fitted_recordings(problem, found.fit)
-    for slot, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
-        carries = slot in general.terms and not term.run
+    for placeholder, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
+        carries = placeholder in general.terms and not term.run
         fit = general.fit if carries else found.fit
-        value, sd = fit.value(slot, "coefficient")
-        drawn = term_force_curve(recordings, term, *found.fit.value(slot, "coefficient"))
-        described = term.with_values({"name": slot, "coefficient": value})
-        written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
-    return Description(
+        value, sd = fit.value(placeholder, "coefficient")
+        drawn = term_force_curve(recordings, term, *found.fit.value(placeholder, "coefficient"))
+        described = term.with_values({"name": placeholder, "coefficient": value})
+        written.append(FittedTerm(described, sd, gains[placeholder], carries, drawn))
+    return SymbolicDescription(
         tuple(written), general.fit, unexplained_evidence(problem, found.fit), found.complete
     )
 
@@ -72,9 +74,9 @@ def _general(
     last choice is the fit without any term, if terms have replaced effects of it.
     """
     chain = [found]
-    for slot in sorted(found.terms, key=lambda n: gains[n]):
-        if not found.terms[slot].run:
-            chain.append(refit_without_term(problem, chain[-1], slot))
+    for placeholder in sorted(found.terms, key=lambda n: gains[n]):
+        if not found.terms[placeholder].run:
+            chain.append(refit_without_term(problem, chain[-1], placeholder))
     events_only = chain[-1]
     if not set(start.fit.effects) <= set(events_only.fit.effects):
         chain.append(start)

@@ -232,20 +232,22 @@ class FittedRecording:
         """
         if (side, sense) not in self._thrusts:
             program = self.problem.program
-            slot = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
+            placeholder = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
             values = self.parameter_values.copy()
-            term = DescribedThrust(name=slot, side=side, sense=sense).with_all_parameters(
+            term = DescribedThrust(name=placeholder, side=side, sense=sense).with_all_parameters(
                 program.vessel
             )
             for name, x in term.law_parameters().items():
-                values[program.parameter_index(slot, name)] = x
-            values[program.parameter_index(slot, "coefficient")] = 1.0
+                values[program.parameter_index(placeholder, name)] = x
+            values[program.parameter_index(placeholder, "coefficient")] = 1.0
             states, held = (
                 np.ascontiguousarray(self.states),
                 np.ascontiguousarray(self.actuator_signals.T),
             )
             without = nominal_forces.body_forces(self.recording, states, held, values, ())
-            doubled = nominal_forces.body_forces(self.recording, states, held, values, (slot,))
+            doubled = nominal_forces.body_forces(
+                self.recording, states, held, values, (placeholder,)
+            )
             self._thrusts[side, sense] = doubled - without
         return self._thrusts[side, sense]
 

@@ -15,7 +15,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.symbolic.grammar import candidate_terms, term_variants
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term, unused_placeholder
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term, unused_placeholder
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
 from boatsim.physics.described_laws import SymbolicTerm
@@ -43,9 +43,9 @@ class Formula:
 
 @dataclass(frozen=True)
 class _Trial:
-    """A formula with one more term: its slot, the fit, and the term as scored."""
+    """A formula with one more term: its placeholder, the fit, and the term as scored."""
 
-    slot: str
+    placeholder: str
     fit: Fit
     scored: ScoredTerm
 
@@ -79,8 +79,8 @@ def select_terms(
         if not trials:
             break
         trial = max(trials, key=lambda t: t.fit.evidence)
-        # the slot has the term of the last trial
-        _write_scored(problem, trial.slot, trial.scored, everywhere)
+        # the placeholder has the term of the last trial
+        _write_scored(problem, trial.placeholder, trial.scored, everywhere)
         term, found = _refined(problem, formula, trial, everywhere)
         found = converge(problem, found)
         gained = formula.fit.evidence - best.evidence
@@ -89,7 +89,7 @@ def select_terms(
         )
         if found.evidence - formula.fit.evidence < required:
             break
-        extended = Formula(found, formula.terms | {trial.slot: term})
+        extended = Formula(found, formula.terms | {trial.placeholder: term})
         fewer: dict[str, Formula] = {}
         if _replaces_effect(problem, formula, extended, fewer):
             refused.add(term_family(trial.scored.term))
@@ -158,22 +158,24 @@ def best_term_of_each_family(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     return list(best.values())
 
 
-def _write_scored(problem: Problem, slot: str, scored: ScoredTerm, everywhere: Recordings) -> None:
-    """Write a term into a slot, and the prior of its coefficient into the problem."""
-    set_placeholder_term(problem, slot, scored.term, everywhere)
-    problem.spreads[slot] = scored.spread
+def _write_scored(
+    problem: Problem, placeholder: str, scored: ScoredTerm, everywhere: Recordings
+) -> None:
+    """Write a term into a placeholder, and the prior of its coefficient into the problem."""
+    set_placeholder_term(problem, placeholder, scored.term, everywhere)
+    problem.spreads[placeholder] = scored.spread
 
 
 def _with_term(
     problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
 ) -> _Trial | None:
-    """Fit the formula with one more term; None if no slot is free or the simulation diverges."""
-    slot = unused_placeholder(problem, type(scored.term), list(formula.terms))
-    if not slot:
+    """Fit the formula with one more term; None if no placeholder is free or the simulation diverges."""
+    placeholder = unused_placeholder(problem, type(scored.term), list(formula.terms))
+    if not placeholder:
         return None
-    _write_scored(problem, slot, scored, everywhere)
+    _write_scored(problem, placeholder, scored, everywhere)
     base, config = formula.fit, problem.config.fit
-    effects = (*base.effects, slot)
+    effects = (*base.effects, placeholder)
     free = problem.free_parameters(effects)
     known = {}
     for f, x in zip(base.free, base.theta, strict=True):
@@ -187,14 +189,14 @@ def _with_term(
     found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
     if not np.isfinite(found.evidence):
         return None
-    return _Trial(slot, fit(problem, found), scored)
+    return _Trial(placeholder, fit(problem, found), scored)
 
 
 def _refined(
     problem: Problem, formula: Formula, trial: _Trial, everywhere: Recordings
 ) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of the newest term; return the term and the fit with it."""
-    config, slot, found = problem.config.describe, trial.slot, trial.fit
+    config, placeholder, found = problem.config.describe, trial.placeholder, trial.fit
     scored = trial.scored
     if not term_variants(scored.term, problem.recordings, config.coarse_refinement[0], config):
         return scored.term, found
@@ -211,12 +213,12 @@ def _refined(
         if better and better.fit.evidence > found.evidence:
             scored, found = best, better.fit
         else:
-            _write_scored(problem, slot, scored, everywhere)
-    return _refined_by_filter(problem, slot, scored.term, found, everywhere)
+            _write_scored(problem, placeholder, scored, everywhere)
+    return _refined_by_filter(problem, placeholder, scored.term, found, everywhere)
 
 
 def _refined_by_filter(
-    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+    problem: Problem, placeholder: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
 ) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of a term with the filter, whose likelihood is exact.
 
@@ -227,12 +229,12 @@ def _refined_by_filter(
     if not term_variants(term, problem.recordings, config.fine_refinement[0], config):
         return term, found
     for _ in range(config.refinement_turns):
-        moved = _moved(problem, slot, term, found, everywhere)
+        moved = _moved(problem, placeholder, term, found, everywhere)
         if moved == term:
             break
         again = fit(problem, found)
         if not again.evidence > found.evidence:
-            set_placeholder_term(problem, slot, term, everywhere)
+            set_placeholder_term(problem, placeholder, term, everywhere)
             break
         term, found = moved, again
     return term, found
@@ -241,21 +243,23 @@ def _refined_by_filter(
 def _refine_all(problem: Problem, formula: Formula, everywhere: Recordings) -> Formula:
     """Refine all terms in the presence of the others, of which they may have explained a part."""
     refined, found = dict(formula.terms), formula.fit
-    for slot, term in formula.terms.items():
-        refined[slot], found = _refined_by_filter(problem, slot, term, found, everywhere)
+    for placeholder, term in formula.terms.items():
+        refined[placeholder], found = _refined_by_filter(
+            problem, placeholder, term, found, everywhere
+        )
     if found is formula.fit:
         return formula
     return Formula(converge(problem, found), refined)
 
 
 def _moved(
-    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+    problem: Problem, placeholder: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
 ) -> SymbolicTerm:
     """Move a term to the maximum of the likelihood with all fitted parameters held."""
     config, on = problem.config.describe, problem.program.effect_switches(found.effects)
 
     def likelihood(candidate: SymbolicTerm) -> float:
-        set_placeholder_term(problem, slot, candidate, everywhere)
+        set_placeholder_term(problem, placeholder, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
     best = likelihood(term)
@@ -268,7 +272,7 @@ def _moved(
             if not scores[last] > best + config.least_move_gain:
                 break
             term, best = near[last], scores[last]
-    set_placeholder_term(problem, slot, term, everywhere)
+    set_placeholder_term(problem, placeholder, term, everywhere)
     return term
 
 
@@ -317,5 +321,5 @@ def refit_without_term(problem: Problem, formula: Formula, name: str) -> Formula
         name: Name of the term's placeholder effect, or of the effect.
     """
     found = converge(problem, remove_effect(problem, formula.fit, name))
-    kept = {slot: term for slot, term in formula.terms.items() if slot != name}
+    kept = {placeholder: term for placeholder, term in formula.terms.items() if placeholder != name}
     return replace(formula, fit=found, terms=kept)

@@ -48,7 +48,7 @@ def acceleration_jacobian(
 
 
 def acceleration_per_force(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
-    """Write the derivatives of the vessel's accelerations by a body force to A[row:, column:]."""
+    """Write the derivatives of acceleration by body force to the filter's matrix A[row:, column:]."""
 
 
 def instrument_readings(

@@ -25,7 +25,7 @@ ITEMS = {REAL: np.dtype(np.float64), WHOLE: np.dtype(np.int64)}
 
 
 def argument_kinds(program: Translation, entry: Entry) -> list[Kind]:
-    """Return the kinds of the arguments of a function, with structs for its named tuples.
+    """Return the kinds of a C function's arguments, with structs for its named tuples.
 
     Args:
         program: The program to which the structs belong.
@@ -87,7 +87,7 @@ class NativeFunction:
         return self._pack(*flat)
 
     def partial(self, *given: Any) -> Callable[..., Any]:
-        """Return a function of the floats in whose place `...` is given; the others are fixed.
+        """Bind arguments; return a function of the floats left open as `...`.
 
         A call costs a fraction of an ordinary one. The function must not be called by two threads
         at the same time.
@@ -175,7 +175,7 @@ def _address(array: Any) -> int:
 
 
 def pack_named_tuple(code: Any, record: Any) -> Any:
-    """Return a named tuple of arrays in a form that makes calls of a program's functions faster.
+    """Return a named tuple of arrays with their addresses looked up, for faster calls of C.
 
     Args:
         code: The program's functions, from C or from numba.
@@ -189,7 +189,7 @@ def pack_named_tuple(code: Any, record: Any) -> Any:
 
 
 def partial_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
-    """Return a function of a program as a function of those numbers for which `...` is given.
+    """Bind arguments of a program's function; return a function of the numbers left open as `...`.
 
     Args:
         code: The program's functions, from C or from numba.

@@ -37,11 +37,11 @@ class Declarations(ABC):
 
     @property
     def source_text(self) -> str:
-        """The whole C source."""
+        """C source of the whole program."""
         return "\n".join([source_preamble(), *self.structs, *self.functions])
 
     def unused_name(self, name: str) -> str:
-        """Return a C name that nothing else has.
+        """Return a C name that no other function, struct or constant of the program has.
 
         Args:
             name: The wanted name.
@@ -54,7 +54,7 @@ class Declarations(ABC):
         return found
 
     def declare_struct(self, record: Any, kinds: Sequence[Kind]) -> Struct:
-        """Return the struct of a named tuple, or of a tuple.
+        """Declare the C struct of a named tuple, or of a tuple, once; return it.
 
         Args:
             record: Type of the named tuple; None for a tuple.
@@ -73,7 +73,7 @@ class Declarations(ABC):
         return self._structs[key]
 
     def declare_constant_tuple(self, found: tuple[Any, ...]) -> Value:
-        """Return a constant tuple of numbers or of such tuples.
+        """Declare a Python tuple of numbers as a C constant, once; return its value.
 
         Args:
             found: The Python tuple.
@@ -91,7 +91,7 @@ class Declarations(ABC):
         return self._constants[key]
 
     def constant_value(self, found: Any) -> Value:
-        """Return a constant number or tuple.
+        """Return a Python number or tuple as a translated constant.
 
         Args:
             found: A Python object.
@@ -109,7 +109,7 @@ class Declarations(ABC):
 
     @abstractmethod
     def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
-        """Translate a function for arguments of given kinds; return its name and result's kind.
+        """Translate a Python function to C; return its C name and the kind of its result.
 
         Args:
             function: A Python or compiled function.

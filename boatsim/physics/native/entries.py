@@ -19,7 +19,7 @@ class Entry(NamedTuple):
 
 
 def tuple_of_numbers(*x: float) -> tuple[float, ...]:
-    """Return the numbers of a result as a tuple."""
+    """Return the numbers of a C function's result as a tuple."""
     return x
 
 
@@ -93,7 +93,7 @@ LIBRARIES = ("simulation", "estimation")
 
 
 def library_functions(module: Any, library: str) -> Mapping[str, Entry]:
-    """Return the functions of a program that one of its libraries has.
+    """Return the functions of a program that one of its C libraries has, by name.
 
     Each library is compiled when one of its functions is first needed.
 

@@ -15,7 +15,7 @@ from boatsim.physics.native.translate import Translation
 
 
 def argument_expression(kind: Kind, word: Iterator[int]) -> str:
-    """Return the C expression of an argument that is built from words.
+    """Return the C expression that builds an argument from the words of a call.
 
     Args:
         kind: Kind of the argument.
@@ -36,7 +36,7 @@ def argument_expression(kind: Kind, word: Iterator[int]) -> str:
 
 
 def export_function(program: Translation, name: str, function: Any, kinds: Sequence[Kind]) -> None:
-    """Add a function that Python can call.
+    """Add a C function to the program that Python can call.
 
     Args:
         program: The program.

@@ -78,23 +78,23 @@ class ExpressionTranslator:
             self.declared[own.text] = kind
 
     def add_line(self, line: str) -> None:
-        """Append a line at the present indentation."""
+        """Append a line to the C source, at the present indentation."""
         self.lines.append("    " * self.depth + line)
 
     def unsupported_error(self, node: ast.AST, what: str) -> NotTranslatable:
-        """Return the exception for a node that has no C form."""
+        """Return the exception for a node of the syntax tree that has no C form."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return NotTranslatable(f"{self.file}:{line}: {what} has no C form")
 
     def declare_variable(self, kind: Kind) -> str:
-        """Declare a further variable."""
+        """Declare a new C variable of a kind; return its name."""
         self.temporaries += 1
         name = f"t_{self.temporaries}"
         self.declared[name] = kind
         return name
 
     def copy_to_variable(self, value: Value) -> Value:
-        """Copy a value to a further variable."""
+        """Write C source that copies a value to a new variable; return the variable."""
         own = self.declare_variable(value.kind)
         self.add_line(f"{own} = {value.text};")
         return Value(value.kind, own)
@@ -103,7 +103,7 @@ class ExpressionTranslator:
     # ------------------------------------------------------------------------------------------
 
     def translate_expression(self, node: ast.expr) -> Value:
-        """Translate an expression."""
+        """Translate a Python expression to C; lines that must precede it are added first."""
         write = getattr(self, f"of_{type(node).__name__}", None)
         if write is None:
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
@@ -111,7 +111,7 @@ class ExpressionTranslator:
         return found
 
     def translate_integer(self, node: ast.expr) -> Value:
-        """Translate an expression that must be an integer."""
+        """Translate a Python expression that must be an integer to C."""
         value = self.translate_expression(node)
         if value.kind == TRUTH:
             return Value(WHOLE, f"((int64_t){value.text})")
@@ -120,26 +120,26 @@ class ExpressionTranslator:
         return value
 
     def of_Constant(self, node: ast.Constant) -> Value:
-        """Translate a number."""
+        """Translate a number in a Python expression to C."""
         if not isinstance(node.value, NUMBERS):
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         return number_value(node.value)
 
     def of_Name(self, node: ast.Name) -> Value:
-        """Translate a variable or a constant of the module."""
+        """Translate a name in a Python expression, a variable or module constant, to C."""
         if node.id in self.variables:
             return self.variables[node.id]
         return self.translate_module_constant(node)
 
     def translate_module_constant(self, node: ast.expr) -> Value:
-        """Translate a constant of the function's module, or of one that it imports."""
+        """Translate a constant of the function's module, or of one that it imports, to C."""
         try:
             return self.program.constant_value(self.resolve_object(node))
         except TypeError:
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'") from None
 
     def resolve_object(self, node: ast.expr) -> Any:
-        """Return the object to which `name` or `module.name` refers; None for a local variable."""
+        """Return the Python object to which a name or an attribute of a module refers."""
         if isinstance(node, ast.Attribute):
             return getattr(self.resolve_object(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:
@@ -152,7 +152,7 @@ class ExpressionTranslator:
         return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
 
     def of_Attribute(self, node: ast.Attribute) -> Value:
-        """Translate a field of a named tuple, a size of an array or a constant of a module."""
+        """Translate an attribute, a field, an array's size or a module constant, to C."""
         if isinstance(node.value, ast.Name) and node.value.id not in self.variables:
             return self.translate_module_constant(node)
         owner = self.translate_expression(node.value)
@@ -164,7 +164,7 @@ class ExpressionTranslator:
         raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def tuple_field(self, owner: Value, i: int) -> Value:
-        """Return one entry of a tuple."""
+        """Return the C expression of one entry of a translated tuple."""
         assert isinstance(owner.kind, Struct)
         if isinstance(owner.fixed, tuple):
             return self.program.constant_value(owner.fixed[i])
@@ -172,7 +172,7 @@ class ExpressionTranslator:
         return Value(kind, f"{owner.text}.{field}")
 
     def of_Subscript(self, node: ast.Subscript) -> Value:
-        """Translate an entry or a part of an array, or an entry of a tuple."""
+        """Translate a Python subscript, an entry or slice of an array or tuple, to C."""
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
             owner, place = (
                 self.translate_expression(node.value.value),
@@ -193,14 +193,14 @@ class ExpressionTranslator:
         return self.translate_array_entry(owner, indices, node)
 
     def translate_index(self, owner: Value, axis: int, node: ast.expr) -> str:
-        """Translate an index; a negative constant counts from the end."""
+        """Translate an array index to C; a negative constant counts from the end."""
         value = self.translate_integer(node)
         if isinstance(value.fixed, int) and value.fixed < 0:
             return f"({owner.text}.n{axis} - {-value.fixed})"
         return value.text
 
     def translate_array_entry(self, owner: Value, indices: Sequence[str], node: ast.expr) -> Value:
-        """Return an entry, a row or a plane of an array."""
+        """Return the C expression of an entry, a row or a plane of an array."""
         assert isinstance(owner.kind, ArrayKind)
         inside, size, n = ", ".join([owner.text, *indices]), owner.kind.dimensions, len(indices)
         if n == size:
@@ -213,7 +213,7 @@ class ExpressionTranslator:
     def translate_array_slice(
         self, owner: Value, places: Sequence[ast.expr], node: ast.expr
     ) -> Value:
-        """Return consecutive entries of a vector, or consecutive rows of a matrix."""
+        """Return the C expression of consecutive entries of a vector or rows of a matrix."""
         if len(places) > 1:
             indices = [self.translate_index(owner, axis, p) for axis, p in enumerate(places[:-1])]
             owner = self.translate_array_entry(owner, indices, node)
@@ -227,7 +227,7 @@ class ExpressionTranslator:
         return Value(kind, f"part_of{kind.dimensions}({owner.text}, {low}, {high})")
 
     def translate_tuple_entry(self, owner: Value, node: ast.Subscript) -> Value:
-        """Return an entry of a tuple, all of the same kind unless the index is constant."""
+        """Return the C expression of a tuple's entry; a variable index needs equal kinds."""
         assert isinstance(owner.kind, Struct)
         place = self.translate_integer(node.slice)
         if not owner.kind.kinds:
@@ -245,16 +245,16 @@ class ExpressionTranslator:
         return Value(kind, f"({{ {inside} }})")
 
     def of_Tuple(self, node: ast.Tuple) -> Value:
-        """Translate a tuple."""
+        """Translate a Python tuple to a C struct."""
         return self.make_tuple(self.translate_arguments(node.elts))
 
     def make_tuple(self, parts: Sequence[Value]) -> Value:
-        """Return a tuple of values."""
+        """Return the C struct value that holds translated values as a tuple."""
         kind = self.program.declare_struct(None, [p.kind for p in parts])
         return Value(kind, f"(({kind.c}){{{', '.join(p.text for p in parts)}}})")
 
     def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
-        """Translate a sign or `not`."""
+        """Translate a sign or `not` in a Python expression to C."""
         of = self.translate_expression(node.operand)
         if isinstance(node.op, ast.Not):
             truth = convert_to_bool(of)
@@ -268,12 +268,12 @@ class ExpressionTranslator:
         raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
-        """Translate arithmetic; integers become floats beside floats, and in divisions."""
+        """Translate a binary arithmetic operation in Python to C."""
         a, b = self.translate_expression(node.left), self.translate_expression(node.right)
         return self.translate_arithmetic(node, node.op, a, b)
 
     def translate_arithmetic(self, node: ast.expr, op: ast.operator, a: Value, b: Value) -> Value:
-        """Return the result of an operator of two numbers."""
+        """Return the C expression of an arithmetic operator applied to two numbers."""
         if not (isinstance(a.kind, Scalar) and isinstance(b.kind, Scalar)):
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if isinstance(op, ast.Pow):
@@ -295,7 +295,7 @@ class ExpressionTranslator:
         return fold_constants(op, a, b) or Value(WHOLE, f"({a.text} {sign} {b.text})")
 
     def convert_bool_to_integer(self, value: Value) -> Value:
-        """Convert a bool to an integer."""
+        """Convert a translated bool to an integer in C; other values are returned unchanged."""
         if value.kind != TRUTH:
             return value
         if isinstance(value.fixed, bool):
@@ -305,7 +305,7 @@ class ExpressionTranslator:
     def translate_remainder(
         self, node: ast.expr, op: ast.operator, a: Value, b: Value, real: bool
     ) -> Value:
-        """Return `a % b` or `a // b`, rounded down as in Python."""
+        """Return the C expression of `a % b` or `a // b`, rounded down as in Python."""
         if real:
             if isinstance(op, ast.FloorDiv):
                 raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
@@ -313,13 +313,11 @@ class ExpressionTranslator:
                 REAL, f"remainder_real({convert_to_double(a).text}, {convert_to_double(b).text})"
             )
         name = "quotient" if isinstance(op, ast.FloorDiv) else "remainder_whole"
-        return Value(
-            WHOLE,
-            f"{name}({self.convert_bool_to_integer(a).text}, {self.convert_bool_to_integer(b).text})",
-        )
+        a, b = self.convert_bool_to_integer(a), self.convert_bool_to_integer(b)
+        return Value(WHOLE, f"{name}({a.text}, {b.text})")
 
     def translate_power(self, node: ast.expr, base: Value, exponent: Value) -> Value:
-        """Return a power; small integer powers are products."""
+        """Return the C expression of a power; small integer powers become products."""
         if base.kind == REAL and exponent.fixed in (2, 3, 4) and isinstance(exponent.fixed, int):
             return Value(REAL, f"power{exponent.fixed}({base.text})")
         if base.kind == REAL and exponent.kind == REAL:
@@ -327,7 +325,7 @@ class ExpressionTranslator:
         raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_Compare(self, node: ast.Compare) -> Value:
-        """Translate a comparison or a chain of comparisons."""
+        """Translate a Python comparison, or a chain of comparisons, to C."""
         ends = [self.translate_expression(e) for e in (node.left, *node.comparators)]
         parts = []
         for op, a, b in zip(node.ops, ends, ends[1:], strict=False):
@@ -343,7 +341,7 @@ class ExpressionTranslator:
         return self.join_conditions(parts, ast.And())
 
     def of_BoolOp(self, node: ast.BoolOp) -> Value:
-        """Translate `and` and `or`, without constant operands."""
+        """Translate Python's `and` and `or` to C, without constant operands."""
         before = len(self.lines)
         found = self.join_conditions(
             [convert_to_bool(self.translate_expression(v)) for v in node.values], node.op
@@ -353,7 +351,7 @@ class ExpressionTranslator:
         return found
 
     def join_conditions(self, parts: Sequence[Value], op: ast.boolop) -> Value:
-        """Join truths by `and` or `or`."""
+        """Return the C expression that joins translated conditions by `and` or `or`."""
         deciding = isinstance(op, ast.Or)
         if any(p.fixed is deciding for p in parts):
             return number_value(deciding)
@@ -365,7 +363,7 @@ class ExpressionTranslator:
         return Value(TRUTH, f"({f' {OPERATORS[type(op)]} '.join(p.text for p in left)})")
 
     def of_IfExp(self, node: ast.IfExp) -> Value:
-        """Translate a conditional expression."""
+        """Translate a conditional expression in Python to C."""
         test = convert_to_bool(self.translate_expression(node.test))
         if isinstance(test.fixed, bool):
             return self.translate_expression(node.body if test.fixed else node.orelse)
@@ -386,7 +384,7 @@ class ExpressionTranslator:
     # ------------------------------------------------------------------------------------------
 
     def of_Call(self, node: ast.Call) -> Value:
-        """Translate a call of a function, a constructor of named tuples or a conversion."""
+        """Translate a Python call to C: of a function, a named tuple or a conversion."""
         what = self.resolve_object(node.func)
         if isinstance(what, type) and issubclass(what, tuple) and hasattr(what, "_fields"):
             return self.translate_named_tuple(node, what)
@@ -418,7 +416,7 @@ class ExpressionTranslator:
         raise self.unsupported_error(node, f"'{ast.unparse(node.func)}'")
 
     def translate_named_tuple(self, node: ast.Call, what: Any) -> Value:
-        """Construct a named tuple; entries that are declared floats are converted."""
+        """Translate the construction of a named tuple to C; declared floats are converted."""
         given = self.bind_arguments(node, what.__new__, skip=1)
         parts = []
         for name, value in zip(what._fields, given, strict=True):
@@ -430,7 +428,7 @@ class ExpressionTranslator:
         return Value(kind, f"(({kind.c}){{{', '.join(p.text for p in parts)}}})")
 
     def bind_arguments(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
-        """Return the arguments of a call in the order of its parameters, with default values."""
+        """Return the translated arguments of a Python call in the order of its parameters."""
         parameters = list(inspect.signature(python).parameters.values())[skip:]
         given: dict[str, Value] = {}
         for parameter, value in zip(parameters, self.translate_arguments(node.args), strict=False):
@@ -443,7 +441,7 @@ class ExpressionTranslator:
         return [given[parameter.name] for parameter in parameters]
 
     def translate_arguments(self, nodes: Sequence[ast.expr]) -> list[Value]:
-        """Translate expressions; a tuple with a star counts as its entries."""
+        """Translate arguments of a call to C; a tuple with a star counts as its entries."""
         found: list[Value] = []
         for node in nodes:
             if not isinstance(node, ast.Starred):
@@ -456,7 +454,7 @@ class ExpressionTranslator:
         return found
 
     def translate_call(self, what: Any, given: Sequence[Value]) -> Value:
-        """Call a function that is itself translated."""
+        """Translate a call of a function that is itself translated to C."""
         python = python_function(what)
         names = python.__code__.co_varnames[: len(given)]
         passed = []
@@ -471,7 +469,7 @@ class ExpressionTranslator:
         return Value(kind, f"{name}({', '.join(v.text for v in passed)})")
 
     def convert_kind(self, kind: Scalar, value: Value) -> Value:
-        """Convert a number to another kind."""
+        """Convert a translated number to another C type."""
         if kind == REAL:
             return convert_to_double(value)
         if kind == TRUTH:
@@ -485,7 +483,7 @@ class ExpressionTranslator:
         return Value(kind, f"(({kind.c}){value.text})")
 
     def translate_min_or_max(self, name: str, node: ast.Call) -> Value:
-        """Return the least or largest of two or more numbers."""
+        """Translate a call of `min` or `max` with two or more numbers to C."""
         given = [self.translate_expression(a) for a in node.args]
         real = any(v.kind == REAL for v in given)
         given = [convert_to_double(v) if real else self.convert_bool_to_integer(v) for v in given]
@@ -495,13 +493,13 @@ class ExpressionTranslator:
         return Value(REAL if real else WHOLE, text)
 
     def translate_absolute(self, value: Value) -> Value:
-        """Return the absolute value of a number."""
+        """Return the C expression of the absolute value of a number."""
         if value.kind == REAL:
             return Value(REAL, f"fabs({value.text})")
         return Value(WHOLE, f"magnitude({self.convert_bool_to_integer(value).text})")
 
     def translate_length(self, node: ast.Call) -> Value:
-        """Return the length of an array or a tuple."""
+        """Translate `len` of an array or a tuple to C."""
         known = self.resolve_object(node.args[0])
         if isinstance(known, tuple):
             return number_value(len(known))
@@ -511,7 +509,7 @@ class ExpressionTranslator:
         return Value(WHOLE, f"{of.text}.n0")
 
     def allocate_array(self, node: ast.Call) -> Value:
-        """Allocate an array of zeros, which is released when the function returns."""
+        """Write C source that allocates an array of zeros, freed when the function returns."""
         if self.loops:
             raise self.unsupported_error(node, "an array that is allocated within a loop")
         wanted, item = node.args[0], REAL
@@ -535,7 +533,7 @@ class ExpressionTranslator:
 
 
 def fold_constants(op: ast.operator, a: Value, b: Value) -> Value | None:
-    """Return the sum, difference or product of two constants; None if either is none.
+    """Return the constant result of an operator on two constants; None if one is no constant.
 
     Args:
         op: The operator.

@@ -20,7 +20,7 @@ class ArrayKind:
 
     @property
     def c(self) -> str:
-        """Name of the C struct: a pointer and the sizes."""
+        """Name of the C struct of the array: a pointer and the sizes."""
         return f"{'array' if self.item == REAL else 'rows'}{self.dimensions}_t"
 
 
@@ -33,12 +33,12 @@ class Struct:
     kinds: tuple["Kind", ...]
 
     def field_kind(self, name: str) -> "Kind":
-        """Return the kind of a field."""
+        """Return the kind of a field of the struct."""
         return self.kinds[self.fields.index(name)]
 
     @property
     def common_field_kind(self) -> "Kind | None":
-        """The kind of all fields, or None if they differ."""
+        """Kind that all fields have, or None if the fields differ."""
         if len(set(self.kinds)) == 1:
             return self.kinds[0]
         return None
@@ -65,7 +65,7 @@ class Value:
 
 
 def scalar_and_array_kinds(kind: Kind) -> list[Scalar | ArrayKind]:
-    """Return the kinds of the numbers and arrays in a possibly nested struct, in order.
+    """Return the kinds of all numbers and arrays in a possibly nested struct, in order.
 
     Args:
         kind: Any kind.
@@ -76,7 +76,7 @@ def scalar_and_array_kinds(kind: Kind) -> list[Scalar | ArrayKind]:
 
 
 def number_value(number: object) -> Value:
-    """Return the C source of a Python number.
+    """Return a Python number as a translated constant, with its C source.
 
     Args:
         number: A bool, int or float.

@@ -43,7 +43,7 @@ def translate_program(module: Any, library: str) -> str:
 
 
 def has_callback(module: Any, library: str) -> bool:
-    """Return whether a library of a program has the callback of MuJoCo.
+    """Return whether a C library of a program contains MuJoCo's passive-force callback.
 
     Args:
         module: The program's package.
@@ -101,7 +101,7 @@ class NativeProgram:
 
 @cache
 def native_program(module: Any, library: str, command: str) -> NativeProgram:
-    """Return a program with functions from C, once in a process.
+    """Load the C library of a program; return the program with its functions from C.
 
     Args:
         module: The program's package.

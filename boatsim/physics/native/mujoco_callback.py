@@ -23,7 +23,7 @@ def _callback_source() -> str:
 
 
 def add_mujoco_callback(program: Translation, module: Any) -> None:
-    """Add the callback of a vessel to the C source of its program.
+    """Add MuJoCo's passive-force callback of a vessel to the C source of its program.
 
     Args:
         program: The C source.
@@ -56,7 +56,7 @@ class NativeCallback:
 def compiled_mujoco_callback(
     library: ctypes.CDLL,
 ) -> Callable[[Mapping[str, int], int], NativeCallback]:
-    """Return `compile_passive_callback` of a program from its C library.
+    """Return `compile_passive_callback` of a program, taken from its C library.
 
     Args:
         library: The library `simulation`.

@@ -44,7 +44,7 @@ class Translation(Declarations):
         self._functions: dict[tuple[Any, tuple[Kind, ...]], tuple[str, Kind]] = {}
 
     def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
-        """Translate a function for arguments of given kinds; return its name and result's kind.
+        """Translate a Python function to C; return its C name and the kind of its result.
 
         Args:
             function: A Python or compiled function.
@@ -77,7 +77,7 @@ class FunctionTranslator(ExpressionTranslator):
     """Translates the body of one function, statement by statement."""
 
     def function_source(self, name: str, inline: bool) -> str:
-        """Return the C function.
+        """Return the C source of the translated function.
 
         Args:
             name: Its name.
@@ -93,7 +93,7 @@ class FunctionTranslator(ExpressionTranslator):
         return "\n".join([head, "{", *own, *self.lines, "}", ""])
 
     def translate_block(self, statements: Sequence[ast.stmt]) -> bool:
-        """Translate statements; return whether they end with a return."""
+        """Translate Python statements to C; return whether they end with a return."""
         for statement in statements:
             write = getattr(self, f"statement_{type(statement).__name__}", None)
             if write is None:
@@ -105,32 +105,32 @@ class FunctionTranslator(ExpressionTranslator):
         return False
 
     def translate_indented(self, statements: Sequence[ast.stmt]) -> bool:
-        """Translate an indented block."""
+        """Translate the statements of an indented Python block to C."""
         self.depth += 1
         ends = self.translate_block(statements)
         self.depth -= 1
         return ends
 
     def statement_Pass(self, node: ast.Pass) -> None:
-        """Write nothing."""
+        """Translate the Python statement `pass` to C: nothing is written."""
 
     def statement_Break(self, node: ast.Break) -> bool:
-        """Leave a loop."""
+        """Translate the Python statement `break` to C."""
         self.add_line("break;")
         return True
 
     def statement_Continue(self, node: ast.Continue) -> bool:
-        """Go on with a loop."""
+        """Translate the Python statement `continue` to C."""
         self.add_line("continue;")
         return True
 
     def statement_Expr(self, node: ast.Expr) -> None:
-        """Call a function; docstrings are left out."""
+        """Translate a statement that only calls a function to C; omit docstrings."""
         if not isinstance(node.value, ast.Constant):
             self.add_line(f"{self.translate_expression(node.value).text};")
 
     def statement_Return(self, node: ast.Return) -> bool:
-        """Return a value: floats where any return of the function is a float."""
+        """Translate a Python `return` to C; a float if any return of the function is one."""
         if node.value is None or (
             isinstance(node.value, ast.Constant) and node.value.value is None
         ):
@@ -154,7 +154,7 @@ class FunctionTranslator(ExpressionTranslator):
         return True
 
     def convert_to_floats(self, value: Value) -> Value:
-        """Convert the numbers of a tuple to floats."""
+        """Convert the numbers of a translated tuple to floats in C."""
         assert isinstance(value.kind, Struct)
         if all(k == REAL for k in value.kind.kinds):
             return value
@@ -167,7 +167,7 @@ class FunctionTranslator(ExpressionTranslator):
         return self.make_tuple(parts)
 
     def statement_Assign(self, node: ast.Assign) -> None:
-        """Assign to names, entries of arrays, or tuples of these."""
+        """Translate a Python assignment to names, array entries or tuples of these to C."""
         targets = node.targets
         if (
             len(targets) == 1
@@ -186,7 +186,7 @@ class FunctionTranslator(ExpressionTranslator):
     def translate_parallel_assignment(
         self, targets: Sequence[ast.expr], values: Sequence[ast.expr]
     ) -> None:
-        """Assign entries one by one; all of them are read before any is written."""
+        """Translate `a, b = c, d` to C; all values are read before any is written."""
         found = [self.translate_expression(v) for v in values]
         set_ = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
         read = {n.id for v in values[1:] for n in ast.walk(v) if isinstance(n, ast.Name)}
@@ -197,18 +197,18 @@ class FunctionTranslator(ExpressionTranslator):
             self.translate_assignment(target, value)
 
     def statement_AnnAssign(self, node: ast.AnnAssign) -> None:
-        """Assign to an annotated name."""
+        """Translate an assignment to an annotated Python name to C."""
         if node.value is not None:
             self.translate_assignment(node.target, self.translate_expression(node.value))
 
     def statement_AugAssign(self, node: ast.AugAssign) -> None:
-        """Translate `+=` and similar statements to assignments."""
+        """Translate `+=` and similar statements to plain assignments in C."""
         before = ast.parse(ast.unparse(node.target), mode="eval").body
         new = ast.copy_location(ast.BinOp(before, node.op, node.value), node)
         self.translate_assignment(node.target, self.translate_expression(new))
 
     def translate_assignment(self, target: ast.expr, value: Value) -> None:
-        """Assign a value to a name, an entry of an array, or a tuple of these."""
+        """Write the C source that assigns a translated value to a Python assignment target."""
         if isinstance(target, ast.Tuple):
             if not isinstance(value.kind, Struct) or len(value.kind.kinds) != len(target.elts):
                 raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
@@ -223,7 +223,7 @@ class FunctionTranslator(ExpressionTranslator):
             raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
 
     def assign_array_entry(self, target: ast.Subscript, value: Value) -> None:
-        """Assign to an entry or a part of an array."""
+        """Write the C source that assigns to an entry or a slice of an array."""
         place = self.translate_expression(target)
         if place.kind == VECTOR:
             if isinstance(value.kind, ArrayKind):
@@ -237,7 +237,7 @@ class FunctionTranslator(ExpressionTranslator):
             raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
 
     def assign_variable(self, target: ast.Name, value: Value) -> None:
-        """Assign to a variable, which is a float if any assignment is one."""
+        """Write the C source that assigns to a variable, a float if any assignment is one."""
         name, known = target.id, self.variables.get(target.id)
         numeric = value.kind in (WHOLE, TRUTH)
         if name in self.floats and numeric:
@@ -257,7 +257,7 @@ class FunctionTranslator(ExpressionTranslator):
         self.add_line(f"{own} = {value.text};")
 
     def statement_If(self, node: ast.If) -> bool:
-        """Write one branch if the test is constant, else both."""
+        """Translate a Python `if` to C; only one branch if its test is constant."""
         test = convert_to_bool(self.translate_expression(node.test))
         if isinstance(test.fixed, bool):
             return self.translate_block(node.body if test.fixed else node.orelse)
@@ -283,7 +283,7 @@ class FunctionTranslator(ExpressionTranslator):
         return False
 
     def statement_For(self, node: ast.For) -> None:
-        """Loop over a range, or over the entries of an array of integers."""
+        """Translate a Python `for` over a range or an array of integers to C."""
         if not isinstance(node.target, ast.Name) or node.orelse:
             raise self.unsupported_error(node, "this loop")
         counter, end = self.declare_variable(WHOLE), self.declare_variable(WHOLE)
@@ -321,7 +321,7 @@ class FunctionTranslator(ExpressionTranslator):
         self.check_kinds_in_loop(node, before)
 
     def statement_While(self, node: ast.While) -> None:
-        """Loop while a condition holds."""
+        """Translate a Python `while` loop to C."""
         before, lines = dict(self.variables), len(self.lines)
         test = convert_to_bool(self.translate_expression(node.test))
         if len(self.lines) != lines:
@@ -334,7 +334,7 @@ class FunctionTranslator(ExpressionTranslator):
         self.check_kinds_in_loop(node, before)
 
     def check_kinds_in_loop(self, node: ast.stmt, before: dict[str, Value]) -> None:
-        """Refuse a variable that changes its kind within a loop."""
+        """Check that no variable changes its C type within a loop."""
         for name, old in before.items():
             if self.variables[name].text != old.text:
                 raise self.unsupported_error(

@@ -9,7 +9,7 @@ from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.incomplete import (
@@ -38,7 +38,7 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 
 
 @pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("budget") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
     return loading.load(Request([path], vessel=BOAT.name), config=FAST)
@@ -48,17 +48,19 @@ def with_budget(work: int) -> DiagnosisConfig:
     return replace(FAST, select=replace(FAST.select, budget=work))
 
 
-def question_with(loaded: Loaded, config: DiagnosisConfig) -> Question:
+def question_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> Question:
     question = set_up_estimation_problem(loaded, config)
     return replace(question, candidates=CANDIDATES)
 
 
-def selection_with(loaded: Loaded, config: DiagnosisConfig) -> pipeline.Selection:
+def selection_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> pipeline.Selection:
     question = question_with(loaded, config)
     return pipeline.select_candidates(question, pipeline.fit_baseline_models(question), loaded)
 
 
-def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(loaded: Loaded) -> None:
+def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
+    loaded: LoadedRecordings,
+) -> None:
     problem = question_with(loaded, FAST).problem
     found = problem.nominal_hypothesis()
     on = problem.program.effect_switches()
@@ -75,19 +77,21 @@ def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(loaded: 
     assert problem.work_count.work == before + work
 
 
-def test_all_recordings_of_a_diagnosis_share_one_count(loaded: Loaded) -> None:
+def test_all_recordings_of_a_diagnosis_share_one_count(loaded: LoadedRecordings) -> None:
     question = question_with(loaded, FAST)
     counts = [mapped.filtered for mapped in (*question.problem.recordings, *question.held_out)]
     assert all(count is question.problem.work_count for count in counts)
 
 
-def test_the_default_budget_skips_nothing(loaded: Loaded) -> None:
+def test_the_default_budget_skips_nothing(loaded: LoadedRecordings) -> None:
     ranking = selection_with(loaded, FAST).ranking
     assert not ranking.skipped
     assert [one.name for one in ranking.named] == ["weak_reverse"]
 
 
-def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded: Loaded) -> None:
+def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(
+    loaded: LoadedRecordings,
+) -> None:
     ranking = selection_with(loaded, with_budget(1)).ranking
     assert not ranking.named and not ranking.best.effects
     assert len(ranking.first) == len(CANDIDATES)  # each candidate alone is always screened
@@ -95,7 +99,9 @@ def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded:
     assert TIME_NOT_CHOSEN in ranking.skipped
 
 
-def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: Loaded) -> None:
+def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(
+    loaded: LoadedRecordings,
+) -> None:
     question = question_with(loaded, FAST)
     base = pipeline.fit_baseline_models(question)
     before = question.problem.work_count.work
@@ -110,7 +116,7 @@ def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: 
 
 
 def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_come(
-    loaded: Loaded, monkeypatch: pytest.MonkeyPatch
+    loaded: LoadedRecordings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     question = question_with(loaded, FAST)
     base = pipeline.fit_baseline_models(question)
@@ -130,7 +136,7 @@ def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_co
     assert not asked and ranking_stage.NOT_EXAMINED in again.skipped
 
 
-def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
+def test_the_same_budget_gives_the_same_answer_again(loaded: LoadedRecordings) -> None:
     first, second = (selection_with(loaded, with_budget(200_000)).ranking for _ in range(2))
     assert first.skipped == second.skipped
     assert first.best.effects == second.best.effects
@@ -138,7 +144,7 @@ def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
 
 
 @pytest.mark.slow
-def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
+def test_the_answer_says_in_words_what_was_skipped(loaded: LoadedRecordings) -> None:
     found = pipeline.diagnose_loaded(loaded, config=with_budget(1))
     answer = found.findings.answer
     assert answer["skipped"]
@@ -158,7 +164,7 @@ def test_the_answer_says_that_candidates_were_not_compared_only_where_that_is_so
 
 
 def test_a_diagnosis_without_work_for_a_second_search_has_compared_all_candidates(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
 ) -> None:
     select = replace(FAST.select, again_share=1e9)
     found = pipeline.diagnose_loaded(loaded, config=replace(FAST, select=select))

@@ -15,7 +15,7 @@ from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 from boatsim.diagnosis.candidates import diagnosis_program, candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.symbolic import grammar
@@ -182,7 +182,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
     """Of recordings under these causes, the last one held out."""
     runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
-    return diagnose_loaded(Loaded(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
+    return diagnose_loaded(LoadedRecordings(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
 
 
 def halved(found: Diagnosis, signal: str) -> bool:

@@ -20,7 +20,7 @@ from boatsim.diagnosis.report.described_terms import (
     factors_in_words,
 )
 from boatsim.diagnosis.symbolic.grammar import term_variants
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.errors import BadInput
 from boatsim.physics import vessel

@@ -1,4 +1,4 @@
-"""Layers of an answer: missing physics, refined numbers of the vessel, effects of unknown size."""
+"""Groups of the identified effects: missing physics, refined numbers, possible effects."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -18,11 +18,11 @@ BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
 INERTIA_UNIT = "kg m^2"
 
 
-class Layers(NamedTuple):
+class EffectGroups(NamedTuple):
     """Identified effects of a diagnosis in three groups, as diagnosis.json has them.
 
-    They are missing physics or measurement errors, refined numbers of the vessel file, and effects
-    that are only possible.
+    They are missing physics or measurement errors, refined numbers of the vessel file, and possible
+    effects, whose size the recordings do not determine.
     """
 
     effects: list[EffectEntry]  # missing physics and errors of the measurement
@@ -54,11 +54,13 @@ class _Number(NamedTuple):
         }
 
 
-def classify_effects(problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]) -> Layers:
-    """Separate identified effects into missing physics, refined numbers and uncertain effects.
+def classify_effects(
+    problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]
+) -> EffectGroups:
+    """Separate identified effects into missing physics, refined numbers and possible effects.
 
     An effect refines a number if the vessel file calls that number an estimate. An effect is
-    uncertain if all its strengths are smaller than their standard deviations.
+    only possible if all its strengths are smaller than their standard deviations.
 
     Args:
         problem: The estimation problem.
@@ -66,20 +68,20 @@ def classify_effects(problem: Problem, best: Fit, entries: Mapping[str, EffectEn
         entries: Their entries, by the name of the candidate.
     """
     vessel = problem.program.vessel
-    layers = Layers([], [], [])
+    groups = EffectGroups([], [], [])
     changed = set[tuple[str, str]]()
     for name, entry in entries.items():
         effect = problem.candidates[name]
         if not _has_known_size(problem, best, effect):
-            layers.also_possible.append(_possible(best, effect, entry))
+            groups.also_possible.append(_possible(best, effect, entry))
         elif sd_of_corrected_estimates(effect, vessel, vessel.estimated) is None:
-            layers.effects.append(entry)
+            groups.effects.append(entry)
         else:
             for number in _refined_numbers(problem, best, effect):
-                layers.refined.append({**entry, **number.entry(entry["name"])})
+                groups.refined.append({**entry, **number.entry(entry["name"])})
             changed |= {(change.owner, change.key) for change in _changes(problem, effect)}
-    layers.refined.extend(_refined_coefficients(problem, best, changed))
-    return layers
+    groups.refined.extend(_refined_coefficients(problem, best, changed))
+    return groups
 
 
 def _strengths(best: Fit, effect: Effect) -> list[FreeParameter]:
