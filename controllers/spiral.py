@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, HelmManoeuvre
+from boatsim.control.base import HelmManoeuvre, Sense
 from boatsim.physics.base import param
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from math import copysign, inf
 from typing import ClassVar
 
-from boatsim.control.base import Sense, HelmManoeuvre
+from boatsim.control.base import HelmManoeuvre, Sense
 from boatsim.physics.base import param
 
 REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached

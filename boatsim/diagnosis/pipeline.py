@@ -51,8 +51,8 @@ from boatsim.diagnosis.search.ranking import (
     fit_baseline,
     select_and_rank_candidates,
 )
-from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
+from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
 from boatsim.physics.program import Program

@@ -24,7 +24,7 @@ Settings = Mapping[str, object]
 
 
 def run_facts(scenario: Scenario, result: RunEntry) -> list[tuple[str, str]]:
-    """Return the facts of a run for its page (vessel, controller, water, seed), label and text each.
+    """Return vessel, controller, water, seed and so on of a run, as pairs of label and text.
 
     Args:
         scenario: The scenario.

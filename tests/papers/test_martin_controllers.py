@@ -19,9 +19,9 @@ from scipy.linalg import expm
 from benchmarks import martin
 from boatsim.control.base import Sense
 from boatsim.control.identification import (
-    LeastSquaresEstimator,
     Forgetting,
     IdentifiedShip,
+    LeastSquaresEstimator,
     append_rudder_state,
     state_space,
 )

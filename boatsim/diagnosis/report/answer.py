@@ -22,9 +22,9 @@ from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.report.assumptions import assumptions_entry, excluded_candidates
 from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
+from boatsim.diagnosis.report.effect_groups import classify_effects
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.incomplete import incomplete_sentence
-from boatsim.diagnosis.report.effect_groups import classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
     Acting,

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.description import SymbolicDescription, FittedTerm
+from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem

@@ -169,7 +169,7 @@ def _write_scored(
 def _with_term(
     problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
 ) -> _Trial | None:
-    """Fit the formula with one more term; None if no placeholder is free or the simulation diverges."""
+    """Fit the formula with one more term; None without a free placeholder or if it diverges."""
     placeholder = unused_placeholder(problem, type(scored.term), list(formula.terms))
     if not placeholder:
         return None

@@ -48,7 +48,7 @@ def acceleration_jacobian(
 
 
 def acceleration_per_force(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
-    """Write the derivatives of acceleration by body force to the filter's matrix A[row:, column:]."""
+    """Write d(acceleration)/d(body force) into the filter's system matrix A, at row and column."""
 
 
 def instrument_readings(

@@ -106,7 +106,7 @@ def native_program(module: Any, library: str, command: str) -> NativeProgram:
     Args:
         module: The program's package.
         library: The library that is needed first.
-        command: Path of the C compiler, `build.compiler()`.
+        command: Path of the C compiler, `build.compiler_path()`.
 
     Raises:
         NoCompiler: The compiler fails.
