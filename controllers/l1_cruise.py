@@ -15,7 +15,7 @@ from boatsim.control.adaptive_loop import (
     loop_memory_type,
     make_loop_design,
 )
-from boatsim.control.allocation import clip_compiled
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import (
     CompiledController,
@@ -57,7 +57,7 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         m.loop.after[0] = s.u
         if m.started == 0.0:
             m.model, m.throttle, m.started = s.u, IDLE, 1.0
-            initialise_loop(m.loop, q.loop, clip_compiled((LINEAR + QUADRATIC * u) * u, low, high))
+            initialise_loop(m.loop, q.loop, limit((LINEAR + QUADRATIC * u) * u, low, high))
         else:
             mean = max(0.5 * (m.speed + s.u), SLOWEST)
             adapt_loop(m.loop, q.loop, power_at_throttle(m.throttle, q.q2) / mean)

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 from boatsim.control.adaptive import LoopChannel
 from boatsim.control.allocation import (
     HEADING,
-    clip_compiled,
     command_outboards,
+    limit,
     thrust_difference_for_sway,
 )
 from boatsim.control.axis import AXIS, filtered_disturbance
@@ -50,7 +50,7 @@ def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
         return 0.0
     spread = (q.sway_mass * q.sway_pole * wanted - felt) / sin(atan2(q.half_spacing, q.arm))
     side = copysign(1.0, wanted)
-    return side * clip_compiled(side * spread, q.least_difference, q.largest_difference)
+    return side * limit(side * spread, q.least_difference, q.largest_difference)
 
 
 @unlocked

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from boatsim.control.adaptive import solve_lyapunov
 from boatsim.control.adaptive_loop import project_rate
-from boatsim.control.allocation import clip_compiled
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
 from boatsim.physics.base import param
@@ -54,7 +54,7 @@ def step_estimate(
         dt: Length of the step [s].
     """
     rate = gain * project_rate(value, -regressor * error, low, high)
-    return clip_compiled(value + dt * rate, low, high)
+    return limit(value + dt * rate, low, high)
 
 
 @merged
@@ -94,7 +94,7 @@ def set_steering_angle(q: Any, m: Any, v: float, r: float) -> float:
     m.slow += FILTER_ZERO / FILTER_POLE * drive
     m.fast += (FILTER_POLE - FILTER_ZERO) / FILTER_POLE * drive - FILTER_POLE * q.period * m.fast
     per_angle = q.slope * q.power / q.inertia  # [1/s^2]
-    m.angle = clip_compiled(q.neutral - (m.slow + m.fast) / per_angle, 0.0, ROOM)
+    m.angle = limit(q.neutral - (m.slow + m.fast) / per_angle, 0.0, ROOM)
     m.reached += (m.angle - m.reached) * q.period / max(q.servo_lag, q.period)
     thrust = q.power * (sin(m.reached) / sin(MODULATED_AT) if q.modulated != 0.0 else 1.0)
     m.sway.given, m.yaw.given = thrust * sin(m.angle) / q.mass, per_angle * (q.neutral - m.angle)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import nan, radians
 from typing import Any, ClassVar
 
-from boatsim.control.allocation import clip_compiled
+from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate, wrap
 from boatsim.control.compiled import CompiledController, lean, merged, record_type, unlocked
 from boatsim.physics.base import param
@@ -55,7 +55,7 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         advance_reference_model(q, memory[b], s, g.psi_rad)
         # [rad/s^2]
         turn = q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r
-        sent[b].jet_rad = clip_compiled(turn * q.time_constant / q.gain, -q.largest, q.largest)
+        sent[b].jet_rad = limit(turn * q.time_constant / q.gain, -q.largest, q.largest)
         sent[b].throttle = g.throttle
 
 

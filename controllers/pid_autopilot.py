@@ -11,8 +11,8 @@ from boatsim.control.allocation import (
     STICK,
     Outboards,
     allocate,
-    clip_compiled,
     integrate_heading,
+    limit,
     nominal_wrench,
     thrust_difference_for_sway,
     write_outboard_commands,
@@ -53,7 +53,7 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
     """
     if m.acted != 0.0:
         integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
-    error = clip_compiled(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
+    error = limit(m.heading.wanted - m.heading.own, -q.largest_error, q.largest_error)
     if m.moment_missed * error <= 0.0:
         m.moment_held += q.period * q.inertia * q.ki * error
     return q.inertia * (q.kp * error + q.kd * (wanted - s.r)) + m.moment_held

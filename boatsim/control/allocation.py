@@ -136,7 +136,7 @@ class Nominal(NamedTuple):
 
 
 @merged
-def clip_compiled(value: float, low: float, high: float) -> float:
+def limit(value: float, low: float, high: float) -> float:
     """Return the value limited to [low, high].
 
     Args:
@@ -163,9 +163,7 @@ def thrust_difference_for_sway(q: Any, sway: float) -> float:
     """
     if abs(sway) < q.sway_dead_zone:
         return 0.0
-    return clip_compiled(
-        q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference
-    )
+    return limit(q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference)
 
 
 @lean
@@ -233,7 +231,7 @@ def allocate(
     else:
         d, spread = angle_and_thrust_difference(q, difference, moment)
         share = HOLD_SHARE
-    spread = clip_compiled(spread, -q.largest_difference, q.largest_difference)
+    spread = limit(spread, -q.largest_difference, q.largest_difference)
     port, starboard = split_thrust(q, surge / cos(d), spread, share * abs(spread) + room)
     return port, starboard, d
 
@@ -253,8 +251,8 @@ def angle_and_thrust_difference(q: Any, difference: float, moment: float) -> tup
     needed = moment / moment_arm(q, 0.0 if helps else ANGLE_MAX)
     spread = copysign(max(abs(difference), abs(needed)), difference)
     sine = moment / (spread * hypot(q.half_spacing, q.arm))
-    return clip_compiled(
-        atan2(q.half_spacing, q.arm) - asin(clip_compiled(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
+    return limit(
+        atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
     ), spread
 
 
@@ -271,10 +269,10 @@ def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[flo
         bound: Limit of |S| [N].
     """
     ahead, astern = thrust_at_pwm(q, PWM_MAX), -thrust_at_pwm(q, -PWM_MAX)
-    total = clip_compiled(total, -bound, bound)
-    kept = clip_compiled(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+    total = limit(total, -bound, bound)
+    kept = limit(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
     spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
-    total = clip_compiled(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
+    total = limit(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
     return 0.5 * (total + spread), 0.5 * (total - spread)
 
 

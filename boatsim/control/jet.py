@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from boatsim.control.allocation import clip_compiled
+from boatsim.control.allocation import limit
 from boatsim.physics.kernel.compiling import lean
 
 JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttle 4
@@ -38,4 +38,4 @@ def throttle_for_power(power: float, q2: float) -> float:
         return max((power + 11.30) / 12.10, 1.0)
     if power < 194.9:  # at 4
         return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
-    return clip_compiled(0.1 * (power - q2), 4.0, 7.0)
+    return limit(0.1 * (power - q2), 4.0, 7.0)

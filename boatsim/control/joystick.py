@@ -11,9 +11,9 @@ from boatsim.control.allocation import (
     HEADING,
     STICK,
     Outboards,
-    clip_compiled,
     command_outboards,
     integrate_heading,
+    limit,
     thrust_difference_for_sway,
 )
 from boatsim.control.axis import AXIS, filtered_disturbance
@@ -41,9 +41,7 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
     if m.acted != 0.0:
         integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
     bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
-    reference = clip_compiled(
-        wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound
-    )
+    reference = limit(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
     acted = m.acted != 0.0
     felt = filtered_disturbance(
         m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period

@@ -247,7 +247,7 @@ def compiled(block: Any, **replaced: Any) -> Any:
 
 
 ball_share = compiled(adaptive.projection_factor)
-interval = compiled(adaptive.project_interval, projection_share=ball_share)
+interval = compiled(adaptive.project_interval, projection_factor=ball_share)
 
 
 class Figures(NamedTuple):

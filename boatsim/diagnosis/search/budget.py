@@ -67,7 +67,7 @@ class SearchBudget:
 
     @property
     def skipped_work_statements(self) -> tuple[str, ...]:
-        """Clauses on what the search skipped because its budget was spent: candidates and trials."""
+        """Clauses on the candidates and trials that were skipped because the budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
