@@ -150,7 +150,7 @@ class L1Heading(CompiledController):
         0.0, low=0.0, high=1.0, unit="", words="1: sigma is adapted by delta, eq. 32"
     )
 
-    def settings(self, count: int = 1) -> Records:
+    def settings_array(self, count: int = 1) -> Records:
         """Return the controller's parameters and L1 loop design as records for its compiled law.
 
         Args:
@@ -170,7 +170,7 @@ class L1Heading(CompiledController):
         )
         if self.regressor_as_published:
             loop["by"][:, 2] = 3
-        return add_nested_records(super().settings(count), loop=loop)
+        return add_nested_records(super().settings_array(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the adaptive estimates with their bounds, the set point and the reference heading.

@@ -72,7 +72,7 @@ def _summarise_item(kind: str, name: str) -> str:
     return str(content.load_class(kind, name).words)
 
 
-def describe(name: str) -> list[str]:
+def item_descriptions(name: str) -> list[str]:
     """Return the output of `boatsim show`: the description of each item of a name, file or folder.
 
     Args:

@@ -646,10 +646,10 @@ def show(
     trust: Trusted = False,
 ) -> None:
     """Describe an effect, vessel, ...: parameters (unit, range, default), source, example."""
-    from boatsim.cli.catalogue import describe
+    from boatsim.cli.catalogue import item_descriptions
 
     with trusted_content(content, trust, [name]):
-        print_lines(describe(name))
+        print_lines(item_descriptions(name))
 
 
 @app.command()

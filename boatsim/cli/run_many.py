@@ -415,7 +415,7 @@ def _exit_with_parent() -> None:
 
 
 def _run_in_worker(index: int, task: Task) -> Outcome:
-    def report(t: float) -> None:
+    def store_time_reached(t: float) -> None:
         _reached[index] = t
         if _stop.is_set():
             raise KeyboardInterrupt
@@ -423,7 +423,7 @@ def _run_in_worker(index: int, task: Task) -> Outcome:
     with _at_work:
         if _stop.is_set():
             return Outcome(task)
-        return run_task(task, report)
+        return run_task(task, store_time_reached)
 
 
 _stop: Event

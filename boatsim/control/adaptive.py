@@ -317,7 +317,7 @@ def l1_norm(system: LinearSystem) -> float:
     return float(np.max(l1_norm_of_outputs(system)))
 
 
-def l1_condition(norm: float, slope: float) -> float:
+def l1_condition_value(norm: float, slope: float) -> float:
     """Return the left side of the L1-norm stability condition: the norm times a slope.
 
     Below 1 the adaptive loop is bounded for uncertainties of at most this slope.
@@ -486,7 +486,7 @@ class LoopChannel:
             gain: Ratio of the true to the assumed input gain of the plant.
         """
 
-        def response(s: Complex) -> Complex:
+        def frequency_response(s: Complex) -> Complex:
             held = (
                 -np.expm1(-2.0 * self.hold_s * s) / (2.0 * self.hold_s * s)
                 if self.hold_s > 0.0
@@ -495,7 +495,7 @@ class LoopChannel:
             actuator = gain * held / (1.0 + self.servo_lag_s * s)
             return np.asarray(self._controller_response(s) * actuator / (s * (s + self.damping)))
 
-        return response
+        return frequency_response
 
     def _controller_response(self, s: Complex) -> Complex:
         """Return -tau / (I0 position) with the filter loop of the controller closed."""
@@ -559,14 +559,14 @@ class SampledChannel:
         rate_gain = (1.0 - decay) / self.damping
         place_gain = (self.period - rate_gain) / self.damping
 
-        def response(s: Complex) -> Complex:
+        def frequency_response(s: Complex) -> Complex:
             z = np.exp(s * self.period)
             rate = rate_gain / (z - decay)
             place = (rate_gain * rate + place_gain) / (z - 1.0)
             to_place, to_rate = self.law(z)
             return np.asarray(gain * (to_place * place + to_rate * rate))
 
-        return response
+        return frequency_response
 
     def l1_norm(self, gain: float) -> float | None:
         """Return None: the L1-norm condition applies to continuous loops, and this one is sampled.

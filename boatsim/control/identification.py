@@ -125,7 +125,7 @@ class IdentifiedShip:
             )
         )
 
-    def matrices(self) -> tuple[Array, Array]:
+    def state_space_matrices(self) -> tuple[Array, Array]:
         """Return state-space matrices A (4, 4) and B (4,) of the identified ship.
 
         The state is (psi, psi one period ago, phi, phi one period ago), the input the rudder angle.

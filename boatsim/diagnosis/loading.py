@@ -60,7 +60,7 @@ class LoadedRecordings:
         return self.vessels[self.fitted[0].path]
 
 
-def load(
+def load_recordings(
     request: Request, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> LoadedRecordings:
     """Read, check and clean the recordings of a diagnosis, and hold some of them out.

@@ -26,7 +26,7 @@ from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.divergence import has_diverged
-from boatsim.diagnosis.evaluation import Evaluation, evaluate
+from boatsim.diagnosis.evaluation import Evaluation, compare_models
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import LoadedRecordings, Request
@@ -52,7 +52,9 @@ from boatsim.diagnosis.search.ranking import (
     select_and_rank_candidates,
 )
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
-from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
+from boatsim.diagnosis.symbolic.residual_description import (
+    describe_residual_force as describe_residual,
+)
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
 from boatsim.physics.program import Program
@@ -151,7 +153,7 @@ def diagnose(
         BadInput: A file, a name or a value cannot be used.
     """
     request = Request(runs, hold_out, vessel, load, library, without, horizon, facts or {})
-    loaded = loading.load(request, report_part_of(report, 0.0, LOADED), config)
+    loaded = loading.load_recordings(request, report_part_of(report, 0.0, LOADED), config)
     return diagnose_loaded(loaded, report_part_of(report, LOADED, 1.0), config)
 
 
@@ -484,7 +486,7 @@ def validate_on_held_out(question: Question, decision: Decision, ranking: Rankin
         decision: The problem with its correlation time.
         ranking: Selected and described effects.
     """
-    return evaluate(decision.problem, ranking, question.held_out)
+    return compare_models(decision.problem, ranking, question.held_out)
 
 
 def plan_next_experiment(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:

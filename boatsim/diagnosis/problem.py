@@ -209,7 +209,9 @@ def froude_scale(unit: str, vessel: Vessel) -> float:
     return float(mass ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
 
 
-def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str) -> None:
+def check_uncertain_coefficients(
+    vessel: Vessel, specified: Mapping[str, float], where: str
+) -> None:
     """Check that a vessel has coefficients of every kind for which an uncertainty is specified.
 
     An example of a kind is "damping"; the uncertainty is that of the prior.

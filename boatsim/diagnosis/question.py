@@ -27,7 +27,7 @@ from boatsim.diagnosis.filter import (
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.near_track import small_track_fact
-from boatsim.diagnosis.problem import Problem, check_uncertainty
+from boatsim.diagnosis.problem import Problem, check_uncertain_coefficients
 from boatsim.diagnosis.work import WorkCount
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -118,11 +118,11 @@ def _uncertainty(
     """Relative prior sd of coefficients by kind. Raises BadInput."""
     uncertainty = priors.coefficient_uncertainty(vessel, config.load)
     where = f"{vessel.file.parent.name}/{vessel.file.name}: diagnosis"
-    check_uncertainty(vessel, uncertainty, where)
+    check_uncertain_coefficients(vessel, uncertainty, where)
     for recording in (*loaded.fitted, *loaded.held_out):
         specified = recording.notes.coefficient_uncertainty
         where = f"{recording.path or recording.name} by its recording.toml"
-        check_uncertainty(loaded.vessels[recording.path], specified, where)
+        check_uncertain_coefficients(loaded.vessels[recording.path], specified, where)
     return uncertainty | loaded.fitted[0].notes.coefficient_uncertainty
 
 

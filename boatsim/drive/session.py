@@ -131,7 +131,7 @@ class Session:
         """
         with background_listener(listen, self._interval) as files:
 
-            def show(rows: Recording) -> None:
+            def show_rows_on_page(rows: Recording) -> None:
                 self._tally.add_rows(rows)
                 self._heading = float(rows["psi_rad"][-1])
                 self._end = float(rows.t[-1])
@@ -142,7 +142,7 @@ class Session:
                 self.server.send_frame(frame)
                 files(rows)
 
-            yield show
+            yield show_rows_on_page
 
     def recording_facts(self) -> Mapping[str, object]:
         """Return facts about the driven run for recording.toml, such as delays and late periods."""

@@ -186,14 +186,14 @@ def python_callback(
         size: Size of the model's userdata, by which the callback recognises its model.
     """
 
-    def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    def add_passive_forces(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
             code.add_passive_forces_in_place(
                 data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M
             )
             mujoco.mj_factorM(model, data)
 
-    return passive
+    return add_passive_forces
 
 
 class installed_callback:  # noqa: N801

@@ -157,7 +157,7 @@ class CompiledControl:
             )
         self.aboard, self.kind = aboard, kind
         n, boat = len(aboard.batch), aboard.batch.vessels[0]
-        rows = np.concatenate([c.settings() for c in controllers])
+        rows = np.concatenate([c.settings_array() for c in controllers])
         self._settings = rows[np.arange(n) % len(rows)]
         self._memory = np.zeros(n, kind.memory_type) if memory is None else memory
         self._sense = np.zeros(n, SENSE)

@@ -144,14 +144,18 @@ def run_into_folder(
                 camera = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv"))
                 options = replace(options, camera_listener=camera.append_rows)
 
-            def listen(rows: Recording) -> None:
+            def pass_rows_to_observers(rows: Recording) -> None:
                 table.append_rows(rows)
                 for observer in started:
                     observer.add_rows(rows)
                 if so_far:
                     so_far.update(simulation.partial_result)
 
-            with steering.wrap_listener(listen) if steering else nullcontext(listen) as listener:
+            with (
+                steering.wrap_listener(pass_rows_to_observers)
+                if steering
+                else nullcontext(pass_rows_to_observers) as listener
+            ):
                 simulation = Simulation(scenario, replace(options, listener=listener), engine)
                 run = simulation.run()
             stop.finishing = True  # signals must not cost the files now

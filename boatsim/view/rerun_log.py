@@ -420,7 +420,7 @@ def _draw_outline(
     stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
 ) -> None:
     """Draw the outline of the hull from above, a line from its middle to the bow, and its name."""
-    ring = scene.outline()
+    ring = scene.hull_outline()
     height, bow, stern = (
         _line_height(scene, number),
         float(ring[:, 0].max()),

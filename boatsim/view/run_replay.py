@@ -168,7 +168,7 @@ def _about_middle(low: float, high: float, size: float) -> tuple[float, float]:
 def _hull_outline(scene: Scene, scale: float) -> Outline:
     """Return the outline of the hull from above, to starboard and astern."""
     found = []
-    for x, y in scene.outline().tolist():  # forward and to port
+    for x, y in scene.hull_outline().tolist():  # forward and to port
         found.append((float(f"{-scale * y:.4g}"), float(f"{-scale * x:.4g}")))
     return found
 

@@ -65,7 +65,7 @@ class Batch(batch.Batch):
         self.motion: MujocoMotion | StandaloneMotion = (
             MujocoMotion(self._there, self.vessels) if mujoco else StandaloneMotion(self._there)
         )
-        self.send()
+        self.copy_inputs_to_device()
 
     def reset(
         self,
@@ -84,7 +84,7 @@ class Batch(batch.Batch):
         """Integrate the motion of all vessels, see `boatsim.simulate.batch.Batch.advance`."""
         if commands is not None:
             self._commands[:] = self._clip(commands, np.arange(self.n))
-        self.send()
+        self.copy_inputs_to_device()
         self.motion.advance(steps)
         self.t += steps * self.step
         self._ahead = True
@@ -129,7 +129,7 @@ class Batch(batch.Batch):
         self._read_from_device()
         super().sense(felt)
 
-    def send(self) -> None:
+    def copy_inputs_to_device(self) -> None:
         """Copy commands and times to the Warp device, and all other arrays if they changed."""
         self._there.commands.assign(self._commands)
         self._there.t.assign(self.t)

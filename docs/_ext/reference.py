@@ -12,7 +12,7 @@ import effect_pages
 from page_markup import bullet_list, escaped, row, sentence, table_rows
 
 from boatsim.cli import app as program
-from boatsim.cli.catalogue import describe
+from boatsim.cli.catalogue import item_descriptions
 from boatsim.cli.entry import CLASSES, class_description
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content
@@ -76,7 +76,7 @@ def _entry_page(kind: str, name: str) -> str:
 
 def _vessel_page(name: str) -> str:
     """Return what `boatsim show` prints of a vessel, without the path of its file."""
-    lines = describe(name)
+    lines = item_descriptions(name)
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
     if "" in lines:
         lines = lines[: lines.index("")]

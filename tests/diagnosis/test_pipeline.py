@@ -381,7 +381,7 @@ def test_the_folder_of_a_run_is_its_recording(tmp_path):
     run.rename(tmp_path / "recording.csv")
     (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n')
     assert len(recording.read(tmp_path)) == len(recording.read(tmp_path / "recording.csv"))
-    loaded = loading.load(loading.Request([tmp_path]))
+    loaded = loading.load_recordings(loading.Request([tmp_path]))
     assert loaded.vessel.name == "trial_boat"
 
 

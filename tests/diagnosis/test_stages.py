@@ -31,7 +31,7 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("stages") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: LoadedRec
         loaded.note = ""  # type: ignore[misc]
     path = Path(str(loaded.fitted[0].path))
     with pytest.raises(BadInput, match="given twice"):
-        loading.load(Request([path], [path], vessel=BOAT.name))
+        loading.load_recordings(Request([path], [path], vessel=BOAT.name))
 
 
 def test_check_finds_nothing_wrong_with_a_sound_recording(

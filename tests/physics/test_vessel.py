@@ -16,7 +16,7 @@ from boatsim.diagnosis.candidates import (
     without_excluded_effects,
 )
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.problem import check_uncertainty
+from boatsim.diagnosis.problem import check_uncertain_coefficients
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
@@ -148,16 +148,16 @@ def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_th
 @pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load_vessel(name)
-    check_uncertainty(boat, priors.coefficient_uncertainty(boat), name)
+    check_uncertain_coefficients(boat, priors.coefficient_uncertainty(boat), name)
 
 
 def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:
     boat = of(boats.PLANAR, tmp_path)
-    check_uncertainty(boat, {"damping": 0.1, "thrust": 0.1}, "here")
+    check_uncertain_coefficients(boat, {"damping": 0.1, "thrust": 0.1}, "here")
     for kind, hint in (("restoring", ""), ("thurst", "; did you mean 'thrust'")):
         line = f"here: coefficient_uncertainty.{kind} = 0.1, but test_boat has no coefficient of {kind}{hint}; "
         with pytest.raises(BadInput, match=f"^{line}allowed are added_mass, damping, thrust$"):
-            check_uncertainty(boat, {"damping": 0.1, kind: 0.1}, "here")
+            check_uncertain_coefficients(boat, {"damping": 0.1, kind: 0.1}, "here")
 
 
 @pytest.mark.parametrize("where", ["vessel", "notes"])

@@ -115,7 +115,7 @@ def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
         [[6.0 + 0.6, 0, 0], [0, 6.0 + 3.0, 3.0 * 0.2], [0, 3.0 * 0.2, 0.5 + 0.3 + 3.0 * 0.2**2]]
     )
     ahead, aside, turning = np.linalg.solve(M, force)
-    batch.send()
+    batch.copy_inputs_to_device()
     assert isinstance(batch.motion, MujocoMotion)
     for psi, found in zip(headings, batch.motion.accelerations(), strict=True):
         turned = (

@@ -130,7 +130,7 @@ def apply_corrections(recording: Recording, changes: Sequence[Change]) -> Record
         changes: The changes; those whose source is missing are ignored.
     """
 
-    def changed(columns: Mapping[str, Array]) -> dict[str, Array]:
+    def correct_columns(columns: Mapping[str, Array]) -> dict[str, Array]:
         result = dict(columns)
         for change in changes:
             if change.source not in columns:
@@ -144,8 +144,8 @@ def apply_corrections(recording: Recording, changes: Sequence[Change]) -> Record
 
     orders = recording.orders
     if orders is not None:
-        orders = replace(orders, signals=changed(orders.signals))
-    signals = changed({"t_s": recording.t, **recording.signals})
+        orders = replace(orders, signals=correct_columns(orders.signals))
+    signals = correct_columns({"t_s": recording.t, **recording.signals})
     t = signals.pop("t_s")
     delays: dict[str, float] = {}
     for change in changes:

@@ -305,7 +305,7 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
     levels = fit_noise(problem, problem.nominal_hypothesis()).levels
     on = problem.program.effect_switches()
 
-    def log_likelihood(each: Reinterpretation) -> float:
+    def log_likelihood_with_changes(each: Reinterpretation) -> float:
         try:
             changed = comparison.problem_with_changes(recordings, each.changes)
         except BadInput:
@@ -318,9 +318,11 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
         step = config.rotation_coarse_step
         angles = np.arange(-180.0 + step, 180.0 + 0.5 * step, step)
         rotations = np.radians(angles[angles % 90.0 != 0.0]).tolist()
-        candidates.append(max(map(heading_offset_hypothesis, rotations), key=log_likelihood))
-    scores = {each.words: log_likelihood(each) for each in candidates}
-    recorded = log_likelihood(Reinterpretation("as recorded", "", ()))
+        candidates.append(
+            max(map(heading_offset_hypothesis, rotations), key=log_likelihood_with_changes)
+        )
+    scores = {each.words: log_likelihood_with_changes(each) for each in candidates}
+    recorded = log_likelihood_with_changes(Reinterpretation("as recorded", "", ()))
     better = [each for each in candidates if scores[each.words] > recorded]
     better.sort(key=lambda each: -scores[each.words])
     return sorted(better[: config.compare_max_candidates], key=candidates.index)

@@ -74,13 +74,19 @@ def reinterpretations(
     """
     columns = set[str]().union(*(r.signals for r in recordings))
 
-    def available(changes: Sequence[Change]) -> tuple[Change, ...]:
+    def changes_of_recorded_columns(changes: Sequence[Change]) -> tuple[Change, ...]:
         return tuple(c for c in changes if c.source in columns)
 
     found = []
     for each in (*_axes(recordings, vessel, config), *_drives(recordings, vessel, config)):
-        others = tuple((words, available(changes)) for words, changes in each.alternatives)
-        found.append(Reinterpretation(each.name, each.words, available(each.changes), others))
+        others = tuple(
+            (words, changes_of_recorded_columns(changes)) for words, changes in each.alternatives
+        )
+        found.append(
+            Reinterpretation(
+                each.name, each.words, changes_of_recorded_columns(each.changes), others
+            )
+        )
     return found
 
 

@@ -323,11 +323,11 @@ def _refit(
     low = np.array(list(map(attrgetter("low"), model.free)))
     high = np.array(list(map(attrgetter("high"), model.free)))
 
-    def values(xi: Array) -> Array:
+    def parameter_values(xi: Array) -> Array:
         return problem.values(recording, model.free, np.clip(model.theta + root @ xi, low, high))
 
     def log_posterior(xi: Array) -> tuple[float, FilterPass]:
-        passed = recording.filter(values(xi), on, best.levels)
+        passed = recording.filter(parameter_values(xi), on, best.levels)
         return passed.log_likelihood - 0.5 * float(xi @ xi), passed
 
     def derivative(xi: Array, about: FilterPass) -> Array:
@@ -336,7 +336,7 @@ def _refit(
         for j in range(len(xi)):
             moved = xi.copy()
             moved[j] += POSTERIOR_STEP
-            changed = recording.whitened_errors(values(moved), on, best.levels, about)
+            changed = recording.whitened_errors(parameter_values(moved), on, best.levels, about)
             U[:, j] = (changed - about.whitened) / POSTERIOR_STEP
         return U
 

@@ -348,7 +348,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     own = _fitted_parameters(best, effect)
     fitted = {name: best.value(effect.name, name)[0] for name in own}
 
-    def moved(name: str, step: float) -> Mapping[str, tuple[float, str]]:
+    def ratios_after_step(name: str, step: float) -> Mapping[str, tuple[float, str]]:
         value = np.clip(fitted[name] + step, own[name].low, own[name].high)
         return effect.with_values(fitted | {name: float(value)}).identifiable_ratios(vessel)
 
@@ -357,7 +357,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     if found:
         for name in fitted:
             sd = _parameter(best, effect, name, config)["sd"]
-            low, high = moved(name, -0.5 * sd), moved(name, 0.5 * sd)
+            low, high = ratios_after_step(name, -0.5 * sd), ratios_after_step(name, 0.5 * sd)
             for key in variance:
                 variance[key] += (high[key][0] - low[key][0]) ** 2
     entries: dict[str, ParameterEntry] = {}

@@ -98,12 +98,16 @@ def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve,
     axes = dof_in_state_order(vessel)
     units = {axis: FORCE_UNITS[axis] for axis in axes}
 
-    def by_axis(values: Array) -> dict[str, Array]:
+    def arrays_by_axis(values: Array) -> dict[str, Array]:
         return dict(zip(axes, values.T, strict=True))
 
     found = []
     for force, remaining in zip(evaluation.missing, evaluation.remaining, strict=True):
-        mean, sd, rest = by_axis(force.mean), by_axis(force.sd), by_axis(remaining.mean)
+        mean, sd, rest = (
+            arrays_by_axis(force.mean),
+            arrays_by_axis(force.sd),
+            arrays_by_axis(remaining.mean),
+        )
         found.append(MissingForceCurve(force.run, force.t, mean, sd, dict(units), rest))
     return tuple(found)
 

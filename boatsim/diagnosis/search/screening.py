@@ -254,12 +254,12 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     if len(begun) > config.screening_starts:
         on = problem.program.effect_switches(begun[0].effects)
 
-        def loss(start: Fit) -> float:
+        def negative_predicted_gain(start: Fit) -> float:
             theta = ParameterSpace(start.free).clip(start.theta)
             white = problem.whitened_errors(start.free, theta, on, start.levels, about.passes)
             return -about.predicted_gain(white)
 
-        begun.sort(key=loss)
+        begun.sort(key=negative_predicted_gain)
         begun = begun[: config.screening_starts]
     if len(begun) == 1:
         best = _gauss_newton_steps(problem, begun[0], about, config.screening_steps)
@@ -288,7 +288,7 @@ def _gauss_newton_steps(
     known = about.columns
     slope = np.append(about.slope, np.zeros(len(free) - len(about.slope)))
 
-    def evaluate(x: Array) -> tuple[Array, float]:
+    def whitened_errors_and_score(x: Array) -> tuple[Array, float]:
         white = problem.whitened_errors(free, x, on, levels, about.passes)
         with np.errstate(over="ignore"):  # the simulated boat may diverge
             score = log_prior(free, x) - 0.5 * float(white @ white)
@@ -305,7 +305,7 @@ def _gauss_newton_steps(
         score += float(slope @ ((x - middle) / space.sd))
         return (white, score) if score > least else None
 
-    white, score = evaluate(theta)
+    white, score = whitened_errors_and_score(theta)
     if not score > about.score - config.screening_loss:
         # the other parameters may make up for the start: more mass for more thrust and damping
         J = np.hstack([known, np.zeros((len(known), len(free) - known.shape[1]))])
@@ -324,7 +324,7 @@ def _gauss_newton_steps(
         if better is not None:
             white, score = better
         elif i == config.screening_halvings - 1:
-            white, score = evaluate(theta)
+            white, score = whitened_errors_and_score(theta)
     if not np.isfinite(score):
         return start, -np.inf
     damping, A = FIRST_DAMPING, np.zeros((len(free), len(free)))
@@ -364,20 +364,22 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
     before = about.passes.log_likelihood
     before += log_prior(base.free, base.theta) + log_latent_force_prior(problem, base.levels)
 
-    def with_likelihood(at: Fit) -> Fit:
+    def fit_with_evidence(at: Fit) -> Fit:
         on = problem.program.effect_switches(at.effects)
         score = problem.log_likelihood(at.free, at.theta, on, at.levels, about.passes)
         score += log_prior(at.free, at.theta)
         evidence = base.evidence + score + log_latent_force_prior(problem, at.levels) - before
         return replace(at, evidence=evidence)
 
-    best = _most_likely(list(map(with_likelihood, stochastic_starting_fits(problem, base, effect))))
+    best = _most_likely(
+        list(map(fit_with_evidence, stochastic_starting_fits(problem, base, effect)))
+    )
     if isinstance(effect, RandomForce):
         for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
             best = _most_likely(
-                [best, with_likelihood(_without_axis(best, base, effect.name, i, axis))]
+                [best, fit_with_evidence(_without_axis(best, base, effect.name, i, axis))]
             )
-        best = _most_likely([best, with_likelihood(_at_assumed_disturbance(problem, best, base))])
+        best = _most_likely([best, fit_with_evidence(_at_assumed_disturbance(problem, best, base))])
     return best
 
 

@@ -44,11 +44,13 @@ def term_force_curve(
         return None
     total = np.bincount(place, weight, BINS)[filled]
 
-    def mean(values: Array) -> Array:
+    def weighted_bin_means(values: Array) -> Array:
         return np.asarray(np.bincount(place, weight * values, BINS)[filled] / total)
 
-    law = mean(size)
-    return Curve(over, mean(x), coefficient * law, sd * np.abs(law), mean(found))
+    law = weighted_bin_means(size)
+    return Curve(
+        over, weighted_bin_means(x), coefficient * law, sd * np.abs(law), weighted_bin_means(found)
+    )
 
 
 def _over(term: SymbolicTerm) -> str:

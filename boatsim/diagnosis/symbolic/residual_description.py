@@ -17,7 +17,7 @@ from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_ter
 from boatsim.progress import Report, ignore_progress
 
 
-def describe(
+def describe_residual_force(
     problem: Problem,
     best: Fit,
     recalibrated: Fit,

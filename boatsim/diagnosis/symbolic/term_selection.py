@@ -258,15 +258,15 @@ def _moved(
     """Move a term to the maximum of the likelihood with all fitted parameters held."""
     config, on = problem.config.describe, problem.program.effect_switches(found.effects)
 
-    def likelihood(candidate: SymbolicTerm) -> float:
+    def log_likelihood_of_term(candidate: SymbolicTerm) -> float:
         set_placeholder_term(problem, placeholder, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
-    best = likelihood(term)
+    best = log_likelihood_of_term(term)
     for step in config.fine_refinement:
         for _ in range(config.refinement_moves):
             near = term_variants(term, problem.recordings, step, config)
-            scores = list(map(likelihood, near))
+            scores = list(map(log_likelihood_of_term, near))
             # the last one of equally likely neighbours
             last = max(range(len(near)), key=lambda i: (scores[i], i))
             if not scores[last] > best + config.least_move_gain:

@@ -110,7 +110,7 @@ class NativeFunction:
         results = np.empty(MOST_RESULTS)
         out = results.ctypes.data
 
-        def call(*numbers: float) -> Any:
+        def call_function(*numbers: float) -> Any:
             for place, number in zip(free, numbers, strict=True):
                 floats[place] = number
             if result is None or not several:
@@ -118,8 +118,8 @@ class NativeFunction:
             found = int(function(address, out))
             return result(*results[:found].tolist())
 
-        call.__dict__["arrays"] = given  # they must live as long as the addresses are used
-        return call
+        call_function.__dict__["arrays"] = given  # they must live as long as the addresses are used
+        return call_function
 
     def _run(self, words: bytes) -> Any:
         if self._result is None:
@@ -201,13 +201,13 @@ def partial_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
         return function.partial(*given)
     free = _places_of_numbers(given)
 
-    def call(*numbers: float) -> Any:
+    def call_function(*numbers: float) -> Any:
         full = list(given)
         for place, number in zip(free, numbers, strict=True):
             full[place] = number
         return function(*full)
 
-    return call
+    return call_function
 
 
 def _places_of_numbers(given: Sequence[Any]) -> list[int]:

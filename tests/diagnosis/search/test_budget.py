@@ -41,7 +41,7 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("budget") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 def with_budget(work: int) -> DiagnosisConfig:
