@@ -100,7 +100,7 @@ class _Pace:
         self.first: tuple[float, float] | None = None  # time [s] and share of the work done
 
     def record_share_done(self, share: float) -> None:
-        """Note the share of the work that is done now."""
+        """Record the share of the work that is done now, for an estimate of the remaining time."""
         if self.first is None and share > 0.0:
             self.first = (monotonic(), share)
 

@@ -318,7 +318,7 @@ def l1_norm(system: LinearSystem) -> float:
 
 
 def l1_condition_value(norm: float, slope: float) -> float:
-    """Return the left side of the L1-norm stability condition: the norm times a slope.
+    """Return the left side of the L1-norm stability condition, a norm times a slope.
 
     Below 1 the adaptive loop is bounded for uncertainties of at most this slope.
 

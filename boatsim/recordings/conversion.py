@@ -42,7 +42,7 @@ class Range(Table):
         return self
 
     def convert(self, values: Array) -> Array:
-        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+        """Convert a signal (N,) to the column, on both sides of neutral; constant beyond the ends."""
         ends = sorted([(self.low, -1.0), (self.neutral, 0.0), (self.high, 1.0)])
         of_signal, of_share = np.array(ends).T
         share = np.interp(values, of_signal, of_share)
@@ -51,7 +51,7 @@ class Range(Table):
 
     @property
     def unclipped_range(self) -> tuple[float, float]:
-        """Smallest and largest value of the signal that is not set to a limit."""
+        """Smallest and largest value of the signal between which the column is not clipped."""
         return min(self.low, self.high), max(self.low, self.high)
 
 
@@ -76,13 +76,13 @@ class Curve(Table):
         return self
 
     def convert(self, values: Array) -> Array:
-        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+        """Convert a signal (N,) to the column by a table of points, constant beyond its ends."""
         of_signal, of_column = np.array(self.points).T
         return np.asarray(np.interp(values, of_signal, of_column))
 
     @property
     def unclipped_range(self) -> tuple[float, float]:
-        """Smallest and largest value of the signal that is not set to a limit."""
+        """Smallest and largest value of the signal between which the column is not clipped."""
         return self.points[0][0], self.points[-1][0]
 
 
@@ -120,7 +120,7 @@ class Allocation(Table):
         return self
 
     def convert(self, values: Array) -> Array:
-        """Return the values (N,) of the column of the sum (N,) of the terms."""
+        """Convert the sum (N,) of the terms to the column by the limits and the power law."""
         total = np.clip(values, self.low, self.high)
         below = self.coefficient_below or self.coefficient
         k = np.where(total < 0.0, below, self.coefficient)
@@ -131,7 +131,7 @@ class Allocation(Table):
 
     @property
     def unclipped_range(self) -> tuple[float, float]:
-        """Smallest and largest value of the sum that is not set to a limit."""
+        """Smallest and largest value of the sum between which the column is not clipped."""
         return self.low, self.high
 
 

@@ -82,7 +82,7 @@ class Converted:
         return self.how.signal
 
     def convert(self, values: Array) -> Array:
-        """Return the values (N,) of the column."""
+        """Convert the values (N,) of the recorded column to those of this column."""
         return self.conversion.convert(self.how.convert(values))
 
 

@@ -178,7 +178,7 @@ class ProgramFunction:
             self._pointer = FunctionPointer(function, call)
 
     def bind_arguments(self, *given: Any) -> Call:
-        """Return a call of the function.
+        """Bind arguments to the function; return the call as the compiled loop takes it.
 
         Args:
             *given: Its arguments, whose arrays must live as long as the call is used.

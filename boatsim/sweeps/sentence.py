@@ -114,7 +114,7 @@ def result_sentence(results: Results) -> str:
 
 
 def headline_metric(results: Results) -> str | None:
-    """Return the metric of the first sentence and picture.
+    """Return the metric of a sweep that the report's first sentence and figure show.
 
     With controllers it is that of the clearest difference. Otherwise it is the one with the
     strongest rank correlation with a varied or sampled number, where a metric that changes by less

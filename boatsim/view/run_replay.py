@@ -48,7 +48,7 @@ READOUTS = {"u_mps": "surge", "v_mps": "sway", "psi_rad": "heading", "phi_rad": 
 
 
 def run_replay(samples: Samples, scene: Scene) -> Replay | None:
-    """Return the replay of a run.
+    """Return the animated replay of a run: the boat seen from above, or a signal over time.
 
     Args:
         samples: Samples of its log.

@@ -179,7 +179,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
 
 def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
     code, values, on = (
-        joystick.simulation,
+        joystick.simulation_functions,
         joystick.values(),
         joystick.effect_switches(["command_delay"]),
     )

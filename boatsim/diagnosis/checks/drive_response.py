@@ -45,7 +45,7 @@ class Reports(NamedTuple):
 def check_drive_response(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Compare the reports of drives with their orders.
+    """Compare the feedback of drives with their commands: dead time, rate limit and lag.
 
     Args:
         recording: A prepared recording.
@@ -97,7 +97,7 @@ def _compare(recording: Recording, order: str, report: str, config: ChecksConfig
 
 
 def feedback_changes(t: Array, values: Array) -> Reports:
-    """Return the rows in which a reported value changes, and how long each value is held.
+    """Return the rows in which a drive's feedback changes, and how long each value is held.
 
     Args:
         t: Times (N,) [s].
@@ -246,7 +246,7 @@ def _response_finding(
 
 
 def fit_drive_response(t: Array, x: Array, y: Array, config: ChecksConfig) -> Response:
-    """Return the dead time, largest rate and lag with which a report follows an order best.
+    """Return dead time, rate limit and lag with which a drive's feedback follows its command best.
 
     All combinations of a grid are simulated.
 

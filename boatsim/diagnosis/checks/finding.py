@@ -107,7 +107,7 @@ def corrected_columns(changes: Iterable[Change]) -> set[str]:
 
 
 def longest_uninterrupted_interval(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
-    """Return the longest uninterrupted interval of a time axis that is cut at some rows.
+    """Return the longest interval of a time axis that contains no cut.
 
     Args:
         t: Times (N,) [s].

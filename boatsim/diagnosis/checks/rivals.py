@@ -98,7 +98,7 @@ def best_rival(problem: Problem, config: ChecksConfig, enough: float) -> Fit:
 
 
 def fit_with_rival_effects(problem: Problem, rival: Fit, effects: Sequence[str]) -> Fit:
-    """Return the fit of another problem with effects of a rival.
+    """Fit the log without its fault with the effects of a rival explanation; return the fit.
 
     Args:
         problem: The problem of the log without its fault.

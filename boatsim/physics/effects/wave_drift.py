@@ -27,7 +27,7 @@ SMOOTH = 1.5
 
 @njit(inline="always")
 def store_lag_states(act: Array, own: Any, first: float, second: float) -> None:
-    """Store the states of the two lags as results.
+    """Store the states of the two lags of the mean square among the actuator signals.
 
     Args:
         act: Values of the signals.

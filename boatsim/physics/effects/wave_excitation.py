@@ -145,7 +145,7 @@ def filter_signal(
 
 @njit(inline="always")
 def store_wave_kinematics(act: Array, own: Any, a: float, b: float, c: float) -> None:
-    """Store elevation, rate and acceleration.
+    """Store elevation, rate and acceleration of the filtered wave among the actuator signals.
 
     Args:
         act: Values of the signals.

@@ -88,7 +88,7 @@ class _Work:
 def convert_log(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
 ) -> Recording:
-    """Return the recording of a log.
+    """Convert a log to a recording, with the signals that a map assigns to the columns.
 
     Args:
         log: The log.
@@ -652,7 +652,7 @@ def recording_notes_text(
 
 
 def use_entry_line(use: Sequence[tuple[float, float]]) -> str:
-    """Return the line of a recording.toml that selects parts of a recording."""
+    """Return the line `use = [...]` of a recording.toml, which selects parts of a recording."""
     return f"use = {list(map(list, use))}"
 
 

@@ -69,7 +69,7 @@ class MemoryBudget:
         self.path, self.values = path, 0
 
     def count_values(self, values: int, signals: int = 0) -> None:
-        """Count values and signals. Raises BadInput for too many."""
+        """Count values and signals that a log reader keeps. Raises BadInput for too many."""
         self.values += values
         if self.values > MAX_VALUES:
             raise file_error(

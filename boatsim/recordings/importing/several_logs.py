@@ -73,7 +73,7 @@ def open_logs(paths: Sequence[Path]) -> Log:
 
 
 def file_spans(log: Log) -> dict[str, Span]:
-    """Return the name of each file of a log -> its span; the first file is first."""
+    """Return the time span of each file of a log, by the file's name; the first file is first."""
     ends: dict[str, Span] = {}
     for signal in log.signals.values():
         finite = signal.t[np.isfinite(signal.t)]
@@ -100,7 +100,7 @@ def files_with_unrelated_clocks(
 
 
 def align_clocks(log: Log, begins: Mapping[str, float], file: str) -> Log:
-    """Return a log of several files on the clock of the first one.
+    """Return a log of several files with all times on the clock of the first file.
 
     Args:
         log: The log.

@@ -5,7 +5,7 @@ from html import escape
 
 
 def html_facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
-    """Return a title and a table of two columns.
+    """Return a title and a two-column table of facts as HTML.
 
     Args:
         title: Text above the table.
@@ -18,7 +18,7 @@ def html_facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
 
 
 def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table with a header; without rows the result is "".
+    """Return a table with a header as HTML; without rows the result is "".
 
     Args:
         header: Texts of the header.
