@@ -42,7 +42,7 @@ class Range(Table):
         return self
 
     def convert(self, values: Array) -> Array:
-        """Convert a signal (N,) to the column, on both sides of neutral; constant beyond the ends."""
+        """Convert a signal (N,) to the column on both sides of neutral; constant beyond."""
         ends = sorted([(self.low, -1.0), (self.neutral, 0.0), (self.high, 1.0)])
         of_signal, of_share = np.array(ends).T
         share = np.interp(values, of_signal, of_share)
