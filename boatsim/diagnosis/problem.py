@@ -282,7 +282,7 @@ class Problem:
 
     def __post_init__(self) -> None:
         program = self.recordings[0].program
-        usual = priors.default_horizon(program.vessel, self.config.load)
+        usual = priors.default_free_run_horizon(program.vessel, self.config.load)
         object.__setattr__(self, "program", program)
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())

@@ -11,7 +11,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.diagnosis.symbolic.curves import term_force_curve
-from boatsim.diagnosis.symbolic.grammar import longest_duration
+from boatsim.diagnosis.symbolic.grammar import longest_recording_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_term, select_terms
 from boatsim.progress import Report, ignore_progress
@@ -85,7 +85,7 @@ def _general(
         fits[str(k)] = formula.fit
     runs, horizon = [], problem.horizon
     if held_out:
-        horizon = min(problem.horizon, longest_duration(held_out))
+        horizon = min(problem.horizon, longest_recording_duration(held_out))
         runs = free_runs(problem, fits, held_out, horizon)
     before = generalization.mean_square_errors(runs, "recalibrated")
     if not before:  # without held-out data no term is confirmed

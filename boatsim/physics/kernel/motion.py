@@ -66,7 +66,7 @@ def pose_and_velocities(s: Any) -> MeasuredMotion:
     raise NotImplementedError
 
 
-def expected_measurement_level(s: Array, code: int, row: Array) -> float:
+def expected_measurement_of_level_hull(s: Array, code: int, row: Array) -> float:
     """Return the expected value of one measured channel for axes that stay level.
 
     Fills its row of the measurement matrix.
