@@ -101,7 +101,7 @@ def _reason_against(f: Findings, name: str, gain: float) -> str:
         return ""
     if gain < required:
         return "too little evidence"
-    effects = [words_of_name(e["name"]) for e in f.answer["effects"]]
+    effects = [name_in_words(e["name"]) for e in f.answer["effects"]]
     if not effects or f.further_gains.get(name, math.inf) >= required:
         return ""
     if len(effects) == 1:

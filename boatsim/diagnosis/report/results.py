@@ -4,7 +4,7 @@ from os.path import commonprefix
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import FURTHER, REORDERED, base_name
+from boatsim.diagnosis.candidates import FURTHER, REORDERED, name_without_prefixes
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import dof_in_state_order
@@ -79,11 +79,13 @@ def _further_gains(ranking: Ranking) -> dict[str, float]:
     gains: dict[str, float] = {}
     for name, fitted in ranking.last.items():
         gain = float(fitted.evidence - ranking.best.evidence)
-        gains[name_without_prefixes(name)] = max(gain, gains.get(name_without_prefixes(name), -np.inf))
+        gains[name_without_prefixes(name)] = max(
+            gain, gains.get(name_without_prefixes(name), -np.inf)
+        )
     return gains
 
 
-def _names(loaded: Loaded) -> dict[str, str]:
+def _names(loaded: LoadedRecordings) -> dict[str, str]:
     """Return the names of the recordings by the paths of their files."""
     names: dict[str, str] = {}
     for recording in (*loaded.fitted, *loaded.held_out):

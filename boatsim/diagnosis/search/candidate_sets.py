@@ -342,7 +342,7 @@ class CandidateSets:
         return self.linearised[1]
 
     def _report_screening(self, share: float) -> None:
-        effects = {base_name(without_group(name)) for name in self.candidates}
+        effects = {name_without_prefixes(without_group(name)) for name in self.candidates}
         stage = f"screening {len(effects)} candidate effects"
         progress.report_part_of(self.report, *SCREENING)(stage, share)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 
-from boatsim.diagnosis.candidates import diagnosis_program, candidate_library
+from boatsim.diagnosis.candidates import candidate_library, diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import LoadedRecordings
@@ -148,7 +148,7 @@ def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
 
 def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> None:
     """Tracks far from each other: such a pattern would be a constant of each recording."""
-    program = Program(BOAT, library_for(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled)
     t, recordings = np.arange(30.0), []
     for name, start, extent in (("near", 0.0, 60.0), ("far", 9000.0, 90.0)):
         signals = {"x_m": start + extent * t / 29.0, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
