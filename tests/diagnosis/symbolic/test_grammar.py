@@ -148,7 +148,7 @@ def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
 
 def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> None:
     """Tracks far from each other: such a pattern would be a constant of each recording."""
-    program = Program(BOAT, candidate_library(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled_effects)
     t, recordings = np.arange(30.0), []
     for name, start, extent in (("near", 0.0, 60.0), ("far", 9000.0, 90.0)):
         signals = {"x_m": start + extent * t / 29.0, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
@@ -156,7 +156,7 @@ def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> Non
         recording = Recording(name, t, signals | commands, Notes(vessel="trial_boat"))
         recordings.append(map_recording(recording, program))
     wavelengths = []
-    for term in grammar.terms(BOAT, recordings, {}, (), DEFAULT.describe):
+    for term in grammar.candidate_terms(BOAT, recordings, {}, (), DEFAULT.describe):
         if term.of == ("ripple_north",):
             wavelengths.append(term.wavelength)
         assert term.of != ("ripple_east",)
