@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import boatsim
-from boatsim.cli.metric_table import print_rows
+from boatsim.cli.metric_table import print_text_table
 from boatsim.cli.progress import show_task_progress
 from boatsim.physics.signals import Array
 from boatsim.sweeps.keys import Value
@@ -83,7 +83,7 @@ def main(arguments: list[str] | None = None) -> int:
             report=report,
         )
     rows, lost = _rows(done)
-    print_rows(
+    print_text_table(
         f"{SECOND} beside {FIRST}: sizes of the metrics on {given.runs} boats", HEAD, rows, 2
     )
     print(

@@ -107,9 +107,11 @@ def simulate_log(test: Scenario, seed: int = 0) -> Recording:
     """Return the log of course, roll and rudder of a scenario, a row each control period."""
     boat = replace(test.vessel, effects=tuple(e.with_seed(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.initial_state_values())
-    code, p, on = program.simulation, program.values(), program.effect_switches()
+    code, p, on = program.simulation_functions, program.values(), program.effect_switches()
     memory, after = np.zeros(program.memory_size), np.empty((2, 2 * code.NQ))
-    code.settle_actuators(program.command_array({}), memory, p, on, np.zeros(program.held_size))
+    code.settle_actuators(
+        program.command_array({}), memory, p, on, np.zeros(program.actuator_signal_size)
+    )
     y = program.to_joint_rates(np.array(start[1:])[list(code.SHOWS)])
     pilot, period, step = test.controller, test.controller.period, test.file.step
     pilot.reset()

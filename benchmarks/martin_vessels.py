@@ -15,7 +15,7 @@ from rich.table import Table
 from scipy.linalg import expm
 
 from boatsim.physics import vessel
-from boatsim.physics.base import AXES, Array, Force, Wrench, motion
+from boatsim.physics.base import AXES, Array, Force, Wrench, make_motion
 from boatsim.physics.effects.irregular_sea import IrregularSea
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.engine import Engine, State
@@ -48,7 +48,7 @@ def force_at_approach_speed(boat: Vessel, **moved: float) -> Array:
     The hull's own Coriolis force is included.
     """
     angle = {"angle": moved.pop("rudder", 0.0)}
-    m = motion(**{"u": speed_of(boat), **moved})
+    m = make_motion(**{"u": speed_of(boat), **moved})
     forces = []
     for e in boat.effects:
         if isinstance(e, Force):
@@ -128,7 +128,7 @@ def rms_accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], flo
 
     The accelerations are yaw, sway and direct roll [deg/s^2].
     """
-    law, m = IrregularSea.law, motion()
+    law, m = IrregularSea.law, make_motion()
     w = Wrench(*np.array([law(m, sea.with_seed(i).values()) for i in range(REALISATIONS)]).T)
     direct = w.K - sea.arm * w.Y
     parts = zip((w.N, w.Y, direct), mass_matrix(boat).diagonal(), strict=True)

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from boatsim.control.adaptive import LinearSystem, step_response
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Force, motion
+from boatsim.physics.base import Array, Force, make_motion
 
 STEP = 1e-3  # [s]
 SURGE = np.array([[-1.4]])
@@ -96,8 +96,8 @@ def neutral_angle(load: str, spacing: str) -> float:
 
     def moment(angle: float) -> float:
         pushes = (
-            port.wrench(motion(), thrust=1.0, angle=angle),
-            starboard.wrench(motion(), thrust=-1.0, angle=-angle),
+            port.wrench(make_motion(), thrust=1.0, angle=angle),
+            starboard.wrench(make_motion(), thrust=-1.0, angle=-angle),
         )
         return float(sum(w.N - resistance * w.Y for w in pushes))
 

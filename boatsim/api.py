@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 from boatsim.arguments import (
     check_instance,
     checked_choice,
+    checked_integer,
     checked_mapping,
     checked_name,
     checked_names,
     checked_number,
-    checked_whole,
     optional_name,
     type_error,
 )
@@ -25,7 +25,7 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.loading import open_parts, open_recording
+from boatsim.diagnosis.loading import open_recording, open_recording_parts
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.notebook_views import (
@@ -415,7 +415,7 @@ def run(
     _check_vessel(vessel)
     out = optional_name("out", out)
     if seed is not None:
-        seed = checked_whole("seed", seed)
+        seed = checked_integer("seed", seed)
     if out is not None and vessel is not None and not _matches_its_file(vessel):
         vessel = vessel.save(f"{out}_vessel")
     loaded = _resolve_scenario(scenario, controller, vessel)
@@ -610,7 +610,7 @@ def replay(
     """
     horizon = _checked_horizon(horizon)
     file, own = Path(checked_name("recording", recording)), optional_name("vessel", vessel)
-    parts, replayed_vessel = open_parts(file, own, checked_names("load", load))
+    parts, replayed_vessel = open_recording_parts(file, own, checked_names("load", load))
     stretches: list[FreeRun] = []
     for part in parts:
         cleaned = drop_faulty_values(part, replayed_vessel)
@@ -672,10 +672,10 @@ def sweep(
         if not isinstance(law, str):
             raise type_error(f"draw[{key!r}]", law, 'a distribution such as "normal(0.7, 0.05)"')
         sampled.append(make_sampled_key(key, law))
-    runs, seed = checked_whole("runs", runs, 1, MOST_RUNS), checked_whole("seed", seed)
+    runs, seed = checked_integer("runs", runs, 1, MOST_RUNS), checked_integer("seed", seed)
     checked_choice("design", design, get_args(Design))
     if jobs is not None:
-        jobs = checked_whole("jobs", jobs, 1, MOST_JOBS)
+        jobs = checked_integer("jobs", jobs, 1, MOST_JOBS)
     if ray is not None:
         check_instance("ray", ray, str, "an address")
     if not callable(report):

@@ -145,7 +145,7 @@ def checked_number(
     return number
 
 
-def checked_whole(argument: str, value: object, low: int = 0, high: int = LARGEST_WHOLE) -> int:
+def checked_integer(argument: str, value: object, low: int = 0, high: int = LARGEST_WHOLE) -> int:
     """Return an argument that is a whole number from `low` to `high` as an int.
 
     Raises:
@@ -173,7 +173,7 @@ def checked_choice(argument: str, value: object, allowed: Sequence[str]) -> str:
     return value
 
 
-def number_array(argument: str, value: object) -> NDArray[np.float64]:
+def float_array(argument: str, value: object) -> NDArray[np.float64]:
     """Return an argument that is a number or an array of numbers as an array of floats.
 
     Raises:
@@ -193,7 +193,7 @@ def number_array(argument: str, value: object) -> NDArray[np.float64]:
     raise BadInput(f"{argument} = {shown(value)}; allowed {allowed}")
 
 
-def whole_array(argument: str, value: object) -> NDArray[np.int64]:
+def integer_array(argument: str, value: object) -> NDArray[np.int64]:
     """Return an argument that is a whole number or an array of them as an array.
 
     Raises:
@@ -205,7 +205,7 @@ def whole_array(argument: str, value: object) -> NDArray[np.int64]:
         raise BadInput(f"{argument} = {shown(value)}; allowed are whole numbers") from None
     if whole.dtype.kind in "iu" and (not whole.size or whole.max() <= LARGEST_WHOLE):
         return whole.astype(np.int64)
-    given = number_array(argument, value)
+    given = float_array(argument, value)
     largest = float(1 << 53)  # floats represent all smaller integers
     if not np.isfinite(given).all() or (given != np.round(given)).any():
         raise BadInput(f"{argument} = {shown(value)}; allowed are whole numbers")

@@ -200,7 +200,7 @@ class AppendedFile:
         """
         self._file, self._path, self._whole = file, path, whole
 
-    def add(self, data: bytes) -> None:
+    def append(self, data: bytes) -> None:
         """Append a piece of data to the file. Raises OSError with the name of the file."""
         rest = memoryview(data)
         try:
@@ -215,7 +215,7 @@ class AppendedFile:
             raise
         self._whole += len(data)
 
-    def discard_end(self, count: int) -> None:
+    def truncate_end(self, count: int) -> None:
         """Discard the last `count` bytes of the file: the next piece replaces them."""
         self._whole -= count
 

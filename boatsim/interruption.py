@@ -37,7 +37,7 @@ class Stop:
         """Return whether the block should stop."""
         return self.requested
 
-    def record(self, *_: object) -> None:
+    def record_signal(self, *_: object) -> None:
         """Record that a signal to stop the program has arrived.
 
         Raises:
@@ -67,7 +67,7 @@ def deferred_signals() -> Iterator[Stop]:
         return
     _block = Stop()
     try:
-        with _install_handler(_block.record):
+        with _install_handler(_block.record_signal):
             yield _block
     finally:
         _block = None

@@ -3,11 +3,11 @@
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import HelmManoeuvre, Sense
 
 
 @dataclass
-class CrashStop(Steered):
+class CrashStop(HelmManoeuvre):
     """Crash stop manoeuvre: commands the engines astern until the ship has stopped."""
 
     words: ClassVar[str] = "standard manoeuvre: engines astern until the ship has stopped"
@@ -21,7 +21,7 @@ class CrashStop(Steered):
         super().reset()
         self._stopped = self._begun = False
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Keep the helm midships and detect the end of the crash stop (no speed ahead).
 
         Args:

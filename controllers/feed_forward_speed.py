@@ -66,6 +66,6 @@ class FeedForwardSpeed(CompiledController):
     def estimates(self) -> dict[str, Estimate]:
         """Return the set point of the speed and the reference speed, for the log of a run."""
         return {
-            "reference_goal_mps": Estimate(float(self.memory_record["goal"]), nan, nan),
-            "reference_u_mps": Estimate(float(self.memory_record["model"]), nan, nan),
+            "reference_goal_mps": Estimate(float(self.single_memory_record["goal"]), nan, nan),
+            "reference_u_mps": Estimate(float(self.single_memory_record["model"]), nan, nan),
         }

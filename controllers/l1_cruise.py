@@ -111,7 +111,7 @@ class L1Cruise(CompiledController):
         0.0, low=0.0, high=1.0, unit="", words="1: k_g = 1/pole, which is wrong"
     )
 
-    def settings(self, count: int = 1) -> Records:
+    def settings_array(self, count: int = 1) -> Records:
         """Return the controller's parameters and L1 loop design as records for its compiled law.
 
         Args:
@@ -128,14 +128,14 @@ class L1Cruise(CompiledController):
             period=self.period,
             step=self.substep,
         )
-        return add_nested_records(super().settings(count), loop=loop)
+        return add_nested_records(super().settings_array(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the adaptive estimates with their bounds, and the reference speed, for the log.
 
         They are theta, sigma and omega of the model of the class.
         """
-        m = self.memory_record
+        m = self.single_memory_record
         theta, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1ps": Estimate(theta, *THETA),

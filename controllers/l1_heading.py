@@ -150,7 +150,7 @@ class L1Heading(CompiledController):
         0.0, low=0.0, high=1.0, unit="", words="1: sigma is adapted by delta, eq. 32"
     )
 
-    def settings(self, count: int = 1) -> Records:
+    def settings_array(self, count: int = 1) -> Records:
         """Return the controller's parameters and L1 loop design as records for its compiled law.
 
         Args:
@@ -170,14 +170,14 @@ class L1Heading(CompiledController):
         )
         if self.regressor_as_published:
             loop["by"][:, 2] = 3
-        return add_nested_records(super().settings(count), loop=loop)
+        return add_nested_records(super().settings_array(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the adaptive estimates with their bounds, the set point and the reference heading.
 
         The estimates are theta, sigma and omega of the model of the class.
         """
-        m = self.memory_record
+        m = self.single_memory_record
         theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1": Estimate(theta_1, *THETA_1),

@@ -6,7 +6,7 @@ from math import cos, degrees, nan, sin
 from typing import ClassVar
 
 from boatsim.control.adaptive import LoopChannel
-from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, Setting
+from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, OutboardSetting
 from boatsim.control.base import Estimate, Sense, clip, wrap
 from boatsim.control.joystick import AdaptiveJoystick
 from boatsim.control.motor_check import PORT, STARBOARD, Drift, MotorCheck, Pulse
@@ -153,7 +153,9 @@ class L1JoystickBlind(AdaptiveJoystick):
 
     def _pulse_commands(self, check: MotorCheck, pulse: Pulse) -> dict[str, float]:
         """Return the commands of a pulse: both motors ahead, astern or off, one turned inward."""
-        astern = max(check.astern * self.pwm_for_thrust(-self.thrust(self.check_pwm)), -PWM_MAX)
+        astern = max(
+            check.astern * self.pwm_for_thrust(-self.thrust_at_pwm(self.check_pwm)), -PWM_MAX
+        )
         pwm = float(round({1: self.check_pwm, -1: astern, 0: 0.0}[pulse.sense]))
         return {
             "pwm_port": pwm,
@@ -171,7 +173,9 @@ class L1JoystickBlind(AdaptiveJoystick):
         self._astern = check.astern
         self._angle = check.yaw_asymmetry * (self.half_spacing - self.moment_arm(d)) / reach
         self._scale = (
-            check.ahead_acceleration * self.mass / (self.thrust(self.check_pwm) * (1.0 + cos(d)))
+            check.ahead_acceleration
+            * self.mass
+            / (self.thrust_at_pwm(self.check_pwm) * (1.0 + cos(d)))
         )
         self._u = check.speed
         self._psi, self._left = compass, wrap(self._start - compass)
@@ -194,7 +198,9 @@ class L1JoystickBlind(AdaptiveJoystick):
     def _dead_reckon(self, commands: Mapping[str, float], stick: float) -> None:
         """Advance reckoned speed and distance by one period."""
         pwm = int(commands["pwm_port"]), int(commands["pwm_starboard"])
-        push = self.wrench_for_commands(Setting(*pwm, round(degrees(commands["steer_port_rad"]))))
+        push = self.wrench_for_commands(
+            OutboardSetting(*pwm, round(degrees(commands["steer_port_rad"])))
+        )
         self._u += self.period * self._scale * push.X / self.mass
         self._x += self.period * (self._u - stick)
 

@@ -6,7 +6,12 @@ from math import atan2, copysign, isnan, nan, sin
 from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LoopChannel
-from boatsim.control.allocation import HEADING, command_outboards, limit, sway_difference
+from boatsim.control.allocation import (
+    HEADING,
+    command_outboards,
+    limit,
+    thrust_difference_for_sway,
+)
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record_type, unlocked
@@ -27,7 +32,7 @@ def sway_thrust_difference(q: Any, m: Any, s: Any, wanted: float) -> float:
         s: Sensor readings.
         wanted: Demanded sway speed [m/s].
     """
-    opened = sway_difference(q, wanted)
+    opened = thrust_difference_for_sway(q, wanted)
     if isnan(s.v):
         return opened
     felt = filtered_disturbance(
@@ -102,7 +107,7 @@ class L1JoystickSway(AdaptiveJoystick):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw, surge and sway, and the reference motion."""
-        sway = self.memory_record["sway"]
+        sway = self.single_memory_record["sway"]
         return {
             **super().estimates(),
             "sigma_sway_N": Estimate(float(sway["sigma"]), nan, nan),

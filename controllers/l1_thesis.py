@@ -186,7 +186,7 @@ class L1Thesis(CompiledController):
 
         The states are sway velocity and yaw rate.
         """
-        _, vh, rh, *_, sway, yaw = self.memory_record.item()
+        _, vh, rh, *_, sway, yaw = self.single_memory_record.item()
         found = {
             f"{name}_{axis}": Estimate(value, *bounds)
             for axis, row in (("sway", sway), ("yaw", yaw))

@@ -92,7 +92,10 @@ class PdHeading(CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the set point of the heading and the reference heading, for the log of a run."""
-        goal, error = float(self.memory_record["goal"]), float(self.memory_record["error"])
+        goal, error = (
+            float(self.single_memory_record["goal"]),
+            float(self.single_memory_record["error"]),
+        )
         return {
             "reference_goal_rad": Estimate(goal, nan, nan),
             "reference_psi_rad": Estimate(goal - error, nan, nan),

@@ -14,7 +14,7 @@ from boatsim.control.allocation import (
     integrate_heading,
     limit,
     nominal_wrench,
-    sway_difference,
+    thrust_difference_for_sway,
     write_outboard_commands,
 )
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
@@ -98,7 +98,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         moment = yaw_moment(q, m, s, g.yaw_radps)
         surge = surge_force(q, m, s, g.surge_mps)
         room = q.surge_kp * q.mass * abs(g.surge_mps) + abs(q.blind_surge * g.surge_mps)
-        port, starboard, angle = allocate(q, surge, sway_difference(q, g.sway_mps), moment, room)
+        port, starboard, angle = allocate(
+            q, surge, thrust_difference_for_sway(q, g.sway_mps), moment, room
+        )
         write_outboard_commands(q, port, starboard, angle, sent[b])
         X, _, N = nominal_wrench(q, port, starboard, angle)
         m.surge_missed, m.moment_missed, m.acted = (

@@ -67,7 +67,7 @@ class PolePlacement(LearningHelm):
         The gains are kept while the identified rudder has no effect.
         """
         n = len(self._gains)
-        a, b = self.ship.matrices()
+        a, b = self.ship.state_space_matrices()
         found = ackermann_gains(a[:n, :n], b[:n], self._wanted)
         self._gains = self._gains if found is None else found
         return -float(self._gains @ np.array([*self.psi[:2], *self.phi[:2]])[:n])

@@ -58,7 +58,7 @@ class Predictive(LearningHelm):
         """Return the rudder angle after the movement that predictive control finds best."""
         periods = round(self.horizon) or (10 if self.roll_reduction else 11)
         forced, free = prediction_matrices(
-            *append_rudder_state(*self.ship.matrices()),
+            *append_rudder_state(*self.ship.state_space_matrices()),
             periods,
             [0, 2] if self.roll_reduction else [0],
         )

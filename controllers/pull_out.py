@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import HelmManoeuvre, Sense
 from boatsim.physics.base import param
 
 
 @dataclass
-class PullOut(Steered):
+class PullOut(HelmManoeuvre):
     """Pull-out manoeuvre: helm to one side, midships, to the other side, midships.
 
     Each part is held for the same time.
@@ -22,7 +22,7 @@ class PullOut(Steered):
         60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held"
     )
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of the present part of a pull-out manoeuvre [rad].
 
         Args:

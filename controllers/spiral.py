@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import HelmManoeuvre, Sense
 from boatsim.physics.base import param
 
 
 @dataclass
-class Spiral(Steered):
+class Spiral(HelmManoeuvre):
     """Dieudonne's spiral manoeuvre: the helm moves in steps from side to side and back.
 
     It shows whether a ship has two rates of turn at one helm angle.
@@ -23,7 +23,7 @@ class Spiral(Steered):
     )
     steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of the present step of a spiral manoeuvre [rad].
 
         Args:

@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 from math import copysign, inf
 from typing import ClassVar
 
-from boatsim.control.base import Sense, Steered
+from boatsim.control.base import HelmManoeuvre, Sense
 from boatsim.physics.base import param
 
 REACHED = 1e-7  # [rad] tolerance with which a heading counts as reached
 
 
 @dataclass
-class Zigzag(Steered):
+class Zigzag(HelmManoeuvre):
     """Kempf's zig-zag manoeuvre about the heading at the start.
 
     A positive angle begins to starboard.
@@ -35,7 +35,7 @@ class Zigzag(Steered):
         super().reset()
         self._side, self._reversed = copysign(1.0, self.angle), 0
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the helm angle of a zig-zag [rad], reversed when the execute heading is reached.
 
         Args:

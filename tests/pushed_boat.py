@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import odeint
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -76,7 +76,7 @@ def sail(
 
 
 def laid(*recordings: Recording) -> tuple[Problem, Fit]:
-    program = Program(BOAT, library_for(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled_effects)
     problem = Problem(
         [map_recording(r, program) for r in recordings],
         prior_noise_levels(BOAT, recordings),

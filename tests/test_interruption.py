@@ -361,11 +361,11 @@ def test_of_a_piece_that_does_not_fit_nothing_stays(tmp_path: Path) -> None:
 
     full: Any = Full()
     file = AppendedFile(full, Path("log"))
-    file.add(b"sevenby")
+    file.append(b"sevenby")
     with pytest.raises(OSError, match="No space left on device") as caught:
-        file.add(b"another")
+        file.append(b"another")
     assert caught.value.filename == "log" and full.content == b"sevenby"
-    file.add(b"two")
+    file.append(b"two")
     assert full.content == b"sevenbytwo"
 
 
@@ -407,7 +407,7 @@ def test_a_log_in_a_file_is_the_one_in_memory(count: int, tmp_path: Path) -> Non
             if i % 7 == 3:  # the last row so far changes, before and after a look at all of it
                 log.rows(0, log.count)
                 log.replace_last_values(2, np.array([-1.0]))
-            log.add(row)
+            log.append_row(row)
     for start, stop in (
         (0, count),
         (count // 2, count),

@@ -25,8 +25,8 @@ from typer.testing import CliRunner
 from boatsim.cli import app, trust_prompt
 from boatsim.cli.exits import LONGEST, one_line, print_error
 from boatsim.cli.run_many import plan_runs
-from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.loading import vessel_for
+from boatsim.diagnosis.candidates import candidate_library
+from boatsim.diagnosis.loading import vessel_of_recording_file
 from boatsim.drive.connections import HANDSHAKE_TIME, MOST_WAITING
 from boatsim.drive.driver_input import PATIENCE, DriverInput, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
@@ -119,10 +119,10 @@ def test_1_an_effect_that_a_vessel_asks_to_be_tried_does_not_run(tmp_path: Path)
     (place / "slime.py").write_text(EFFECT)
     boat = vessel.load_vessel(f"{place}/")
     with pytest.raises(BadInput, match="is not run"):
-        library_for(boat)
+        candidate_library(boat)
     assert not (place / "slime.ran").exists()
     with trust.trust_folders(allowed=[place]):
-        assert "slime" in library_for(boat).tested
+        assert "slime" in candidate_library(boat).tested_names
 
 
 def test_1_a_strangers_recording_runs_nothing(tmp_path: Path) -> None:
@@ -287,9 +287,9 @@ def test_7_paths_in_notes_start_at_their_folder(far: Path, monkeypatch: pytest.M
     boats.written(home, "mine", boats.ROLL)
     (home / "recording.toml").write_text('vessel = "mine/"\n')
     monkeypatch.chdir(far.parent)
-    assert vessel_for(far, None, []).file == home / "mine" / "vessel.toml"
+    assert vessel_of_recording_file(far, None, []).file == home / "mine" / "vessel.toml"
     with pytest.raises(BadInput):
-        vessel_for(far, "mine/", [])  # the user's own word starts where he is
+        vessel_of_recording_file(far, "mine/", [])  # the user's own word starts where he is
 
 
 @pytest.mark.parametrize(
@@ -321,7 +321,7 @@ def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
     )
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"still", "twin"} and ran.exists()
     with trust.trust_folders(allowed=[tmp_path], ask=lambda folder: True):
-        assert trust.current_trust().ask is None and trust.current_trust().contains(ran)
+        assert trust.trusted_folder_list().ask is None and trust.trusted_folder_list().contains(ran)
 
 
 def test_10_trust_in_python_ends_with_its_block(tmp_path: Path) -> None:
@@ -384,7 +384,7 @@ def test_13_a_damaged_cache_is_built_again(
     code = (
         "import sys, numpy as np; from boatsim.physics import vessel; from boatsim.physics.program import Program\n"
         "p = Program(vessel.load_vessel(sys.argv[1]))\n"
-        "state, act = np.array([0.1, 0.0]), np.zeros(p.held_size)\n"
+        "state, act = np.array([0.1, 0.0]), np.zeros(p.actuator_signal_size)\n"
         "print(p.module.total_body_force(0.0, state, act, np.int64(0), p.values(), p.effect_switches())[0])"
     )
 

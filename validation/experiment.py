@@ -22,7 +22,7 @@ import numpy as np
 from rich.progress import track as shown
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.experiment_design.next_experiment import (
     Plan,
     all_plans,
@@ -31,7 +31,7 @@ from boatsim.diagnosis.experiment_design.next_experiment import (
 )
 from boatsim.diagnosis.filter import dof_in_state_order, map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Problem, froude_scale
-from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import VesselNumbers
@@ -77,7 +77,7 @@ class Outcome:
 def program() -> Program:
     """Return the compiled program of the vessel with all its candidates."""
     boat = vessel.load_vessel(BOAT)
-    return Program(boat, library_for(boat).compiled)
+    return Program(boat, candidate_library(boat).compiled_effects)
 
 
 def perturbed_boat(truth: str, rng: np.random.Generator) -> Boat:
@@ -138,8 +138,8 @@ def record_boat(
     name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
 ) -> Recording:
     """Return the recording of a boat under the commands, with ambient force and camera noise."""
-    code, y, out = program().simulation, start.copy(), np.zeros((2, 6))
-    memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
+    code, y, out = program().simulation_functions, start.copy(), np.zeros((2, 6))
+    memory, act = np.zeros(program().memory_size), np.zeros(program().actuator_signal_size)
     code.settle_actuators(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in dof_in_state_order(program().vessel)])
@@ -174,7 +174,7 @@ def diagnose(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
         prior_noise_levels(boat, recordings),
         uncertainty,
     )
-    return problem, rank(problem, tuple(e.name for e in program().candidates))
+    return problem, select_and_rank_candidates(problem, tuple(e.name for e in program().candidates))
 
 
 def probability(ranking: Ranking, name: str) -> float:
@@ -212,7 +212,7 @@ def run_case(truth: str, seed: int) -> Outcome:
         truth,
         *(probability(r, truth) for r in (before, after, other, same)),
         plan.manoeuvre if plan else "",
-        plan.expected_gain if plan else 0.0,
+        plan.expected_log_bayes_factor if plan else 0.0,
         lead_over_others(after, truth) - lead_over_others(before, truth),
     )
 
@@ -255,7 +255,7 @@ def main() -> None:
         chosen = [(n, 0) for n in names[::3]]
     else:
         chosen = [(n, seed) for n in names for seed in (0, 1)]
-    program().simulation  # noqa: B018  # compile before the processes start
+    program().simulation_functions  # noqa: B018  # compile before the processes start
     begin = time.time()
     with ProcessPoolExecutor(args.jobs) as pool:
         found = list(

@@ -33,7 +33,7 @@ from rich.console import Console
 from rich.table import Table
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import (
     dof_in_state_order,
@@ -43,7 +43,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.locate.missing_force import missing_force
-from boatsim.diagnosis.locate.regions import Region, regions
+from boatsim.diagnosis.locate.regions import Region, find_missing_force_conditions
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
@@ -74,8 +74,8 @@ class LocatedForce:
 def problem_of(trial: Path) -> Problem:
     """Map the recordings of a trial on the vessel's program, as a diagnosis does."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
-    recordings, boat = [r.thinned(priors.used_sample_rate(b)) for r, b in opened], opened[0][1]
-    program = Program(boat, library_for(boat).compiled)
+    recordings, boat = [r.thinned(priors.downsampling_rate(b)) for r, b in opened], opened[0][1]
+    program = Program(boat, candidate_library(boat).compiled_effects)
     tracks = [map_recording(r, program, shared_noise(boat, recordings)) for r in recordings]
     uncertainty = priors.coefficient_uncertainty(boat)
     return Problem(
@@ -96,7 +96,7 @@ def locate_force(trial: Path) -> LocatedForce:
     known = recalibrate(problem)
     begin = time.process_time()
     forces = missing_force(problem, known, problem.recordings)
-    found_in = regions(problem, known)
+    found_in = find_missing_force_conditions(problem, known)
     seconds = time.process_time() - begin
     samples = []
     columns = []

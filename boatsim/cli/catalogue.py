@@ -8,7 +8,7 @@ from itertools import starmap
 from math import degrees, isnan
 from pathlib import Path
 
-from boatsim.cli.entry import CLASSES, describe_class
+from boatsim.cli.entry import CLASSES, class_description
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import array_of_tables, read_toml
 from boatsim.physics import content, vessel
@@ -72,7 +72,7 @@ def _summarise_item(kind: str, name: str) -> str:
     return str(content.load_class(kind, name).words)
 
 
-def describe(name: str) -> list[str]:
+def item_descriptions(name: str) -> list[str]:
     """Return the output of `boatsim show`: the description of each item of a name, file or folder.
 
     Args:
@@ -111,7 +111,7 @@ def describe(name: str) -> list[str]:
 
 def _class_lines(kind: str, name: str) -> list[str]:
     """Description of an effect, controller, measure or sensor."""
-    item = describe_class(kind, name)
+    item = class_description(kind, name)
     lines = [f"{item.name}: {kind}", f"  {item.words}"]
     lines += map(str.rstrip, map("  {}".format, item.doc))
     lines += starmap("  {}: {}".format, item.facts)

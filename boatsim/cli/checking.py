@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, one_line, print_error, print_lines
-from boatsim.diagnosis.checks.entry import entry_text
+from boatsim.diagnosis.checks.entry import finding_lines
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import escape_for_terminal
@@ -41,7 +41,7 @@ def print_checks(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         if wrong or not refused:
             print_lines([f"{escape_for_terminal(str(path))}: {summary}"])
         for entry in wrong:
-            print_lines(map("  {}".format, entry_text(entry)))
+            print_lines(map("  {}".format, finding_lines(entry)))
         for entry in entries:
             if entry["kind"] in INFORMATION:
                 remedy = entry.get("remedy", "")

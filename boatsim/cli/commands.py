@@ -419,10 +419,10 @@ def drive(
     """Drive a boat in real time from a page in the browser (gamepad, keys, mouse); record it."""
     from boatsim.cli.driving import drive_vessel
     from boatsim.cli.run_many import ViewerOptions
-    from boatsim.drive.task import Task
+    from boatsim.drive.task import DriveTask
 
     with trusted_content(content, trust, [vessel, controller, scenario]):
-        task = Task(vessel, scenario, controller, _split_loads(load), seconds)
+        task = DriveTask(vessel, scenario, controller, _split_loads(load), seconds)
         viewer = None
         if live or serve:
             viewer = ViewerOptions(serve)
@@ -646,10 +646,10 @@ def show(
     trust: Trusted = False,
 ) -> None:
     """Describe an effect, vessel, ...: parameters (unit, range, default), source, example."""
-    from boatsim.cli.catalogue import describe
+    from boatsim.cli.catalogue import item_descriptions
 
     with trusted_content(content, trust, [name]):
-        print_lines(describe(name))
+        print_lines(item_descriptions(name))
 
 
 @app.command()

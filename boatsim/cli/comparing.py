@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from boatsim.cli.exits import print_lines
-from boatsim.cli.metric_table import explain_missing_values, format_value, print_table
+from boatsim.cli.metric_table import explain_missing_values, format_value, print_rich_table
 from boatsim.errors import escape_for_terminal
 from boatsim.files import replace_file
 
@@ -153,7 +153,7 @@ def _print_comparison(
             style = "bold" if BEST in cell else ""
             texts.append(Text(escape_for_terminal(cell), style))
         table.add_row(*texts)
-    print_table(table)
+    print_rich_table(table)
     used = " ".join(chain.from_iterable(row[2:] for row in rows))
     marks = {BEST: "the best, where lower is better", MISSED: "outside its regression band"}
     legend = "; ".join(f"{mark} {words}" for mark, words in marks.items() if mark in used)

@@ -12,7 +12,7 @@ from boatsim.cli.programs import typed_program
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
-from boatsim.diagnosis.report.brief import brief_lines
+from boatsim.diagnosis.report.brief import summary_lines
 from boatsim.diagnosis.report.experiment_section import is_optional
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.output_files import write_diagnosis
@@ -81,7 +81,7 @@ def run_demo(out: Path, browser: bool) -> int:
         found = analyse(fitted, recordings[len(fitted) :], horizon=demo.horizon, report=report)
     _print_now(["3. Writing the report."])
     write_diagnosis(found, out)
-    _print_now(["", *brief_lines(found.findings), *_truth_lines(loaded, found), ""])
+    _print_now(["", *summary_lines(found.findings), *_truth_lines(loaded, found), ""])
     _print_now(_next_lines(out, found.findings))
     if browser:
         _open(out / "report.html")

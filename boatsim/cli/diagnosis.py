@@ -11,10 +11,10 @@ from boatsim.atomic_folder import atomic_folder
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
-from boatsim.diagnosis.checks.entry import entry_text
+from boatsim.diagnosis.checks.entry import finding_lines
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
-from boatsim.diagnosis.loading import open_parts, open_recording
+from boatsim.diagnosis.loading import open_recording, open_recording_parts
 from boatsim.diagnosis.log_check import correction_hint
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import fit_noise_only, free_run_columns, replay_recording
@@ -77,7 +77,7 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
             write_error = error
     for entry in found.findings.answer.get("log", []):
         if entry["kind"] == "fault":
-            for line in entry_text(entry):
+            for line in finding_lines(entry):
                 print_note(f"{entry['run']}: {line.strip()}")
     print_notes(found.remarks)
     print_lines(console_lines(found.findings))
@@ -109,7 +109,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
     """
     with report_stages() as report:
         report("reading the recording")
-        parts, boat = open_parts(run, vessel, load)
+        parts, boat = open_recording_parts(run, vessel, load)
         stretches, remarks = list[FreeRun](), list[str]()
         for part in parts:
             cleaned = drop_faulty_values(part, boat)

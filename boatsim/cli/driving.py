@@ -11,8 +11,8 @@ from boatsim.cli.metric_table import print_metrics
 from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
 from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.server import Server
-from boatsim.drive.session import NothingDriven, Session, folder_name
-from boatsim.drive.task import FILE, Task
+from boatsim.drive.session import NothingDriven, Session, output_folder_name
+from boatsim.drive.task import FILE, DriveTask
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.view.run_observers import page_observer, rerun_observers
@@ -21,7 +21,7 @@ from boatsim.view.viewer import has_display
 
 
 def drive_vessel(
-    task: Task, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
+    task: DriveTask, out: Path | None, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> int:
     """Let a user drive a vessel from a web page until the user stops; print metrics and timing.
 
@@ -35,7 +35,7 @@ def drive_vessel(
     Returns:
         Exit code.
     """
-    folder = out or folder_name(task.vessel.name, time.time())
+    folder = out or output_folder_name(task.vessel.name, time.time())
     missing = [parent for parent in folder.parents if not parent.exists()]
     try:
         content, session = _drive(task, folder, browser, port, viewer)
@@ -49,7 +49,7 @@ def drive_vessel(
 
 
 def _drive(
-    task: Task, folder: Path, browser: bool | None, port: int, viewer: ViewerOptions | None
+    task: DriveTask, folder: Path, browser: bool | None, port: int, viewer: ViewerOptions | None
 ) -> tuple[RunEntry, Session]:
     """Let a user drive; return the content of norms.json, and the session."""
     with ExitStack() as stack:
@@ -62,7 +62,7 @@ def _drive(
         print_note(f"drive in a browser on this machine: {server.address}")
         if browser or (browser is None and has_display()):
             webbrowser.open(server.address)
-        scenario = task.scenario_in_folder(folder)
+        scenario = task.scenario_with_address(folder)
         page = page_observer(scenario, run_command(str(folder / FILE)))
         observers = [*rerun_observers(address), page]
         done = run_into_folder(folder, scenario, observers=observers, steering=session)

@@ -44,7 +44,7 @@ class Entry:
     example: tuple[str, ...]
 
 
-def describe_class(kind: str, name: str) -> Entry:
+def class_description(kind: str, name: str) -> Entry:
     """Return the description of an effect, controller, measure or sensor for `boatsim show`.
 
     Args:

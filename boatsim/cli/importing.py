@@ -18,7 +18,7 @@ from boatsim.recordings.importing.convert import (
     convert_log,
     position_fix_type,
     recording_notes_text,
-    use_line,
+    use_entry_line,
 )
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
@@ -189,7 +189,9 @@ def _convert_logs(
     if boat is not None:
         _write_vessel(out, boat, position_fix_type(mapping), recording.notes.use)
     elif recording.notes.use:
-        print_note(f"write into {out.parent / 'recording.toml'}: {use_line(recording.notes.use)}")
+        print_note(
+            f"write into {out.parent / 'recording.toml'}: {use_entry_line(recording.notes.use)}"
+        )
     try:
         if boat is None:
             read(out, limits)

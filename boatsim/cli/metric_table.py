@@ -114,7 +114,9 @@ def _format_band(band: Sequence[float | None] | None, unit: str) -> str:
     return ""
 
 
-def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
+def print_text_table(
+    title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left: int
+) -> None:
     """Print a table of text on the terminal.
 
     Args:
@@ -132,10 +134,10 @@ def print_rows(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], l
         table.add_column(Text(escape_for_terminal(heading)), justify=side, no_wrap=True)
     for row in rows:
         table.add_row(*map(Text, map(escape_for_terminal, row)))
-    print_table(table)
+    print_rich_table(table)
 
 
-def print_table(table: "Table") -> None:
+def print_rich_table(table: "Table") -> None:
     """Print a table of the library rich; in a file no cell is cut, however wide the table is.
 
     Args:

@@ -45,7 +45,7 @@ def _report_lines() -> Report:
     stages: list[str] = []
     start = last_line = monotonic()
 
-    def report(stage: str, share: float = 0.0, detail: str = "") -> None:
+    def print_stage_line(stage: str, share: float = 0.0, detail: str = "") -> None:
         nonlocal last_line
         now = monotonic()
         if stage in stages:  # The selection of effects is repeated after the validation.
@@ -61,7 +61,7 @@ def _report_lines() -> Report:
         if len(stages) > 1:
             print_progress(stage)
 
-    return report
+    return print_stage_line
 
 
 @contextmanager
@@ -78,9 +78,9 @@ def show_task_progress() -> Iterator[Report]:
     last_line = monotonic() - LINE_INTERVAL
     paced = _Pace()
 
-    def report(stage: str, share: float = 0.0, detail: str = "") -> None:
+    def print_progress_line(stage: str, share: float = 0.0, detail: str = "") -> None:
         nonlocal last_line
-        paced.note(share)
+        paced.record_share_done(share)
         if monotonic() - last_line < LINE_INTERVAL and share < 1.0:
             return
         last_line = monotonic()
@@ -90,7 +90,7 @@ def show_task_progress() -> Iterator[Report]:
             line = f"{line}, {left}"
         print_progress(line)
 
-    yield report
+    yield print_progress_line
 
 
 class _Pace:
@@ -99,8 +99,8 @@ class _Pace:
     def __init__(self) -> None:
         self.first: tuple[float, float] | None = None  # time [s] and share of the work done
 
-    def note(self, share: float) -> None:
-        """Note the share of the work that is done now."""
+    def record_share_done(self, share: float) -> None:
+        """Record the share of the work that is done now, for an estimate of the remaining time."""
         if self.first is None and share > 0.0:
             self.first = (monotonic(), share)
 
@@ -141,7 +141,7 @@ def _show_bar(paced: "_Pace | None" = None) -> Iterator[Report]:
     )
     row = bars.add_task("", total=1.0, left="")
 
-    def report(stage: str, share: float = 0.0, detail: str = "") -> None:
+    def update_bar(stage: str, share: float = 0.0, detail: str = "") -> None:
         words = stage
         if detail:
             words += f": {detail}"
@@ -149,12 +149,12 @@ def _show_bar(paced: "_Pace | None" = None) -> Iterator[Report]:
         done = max(share, bars.tasks[row].completed)
         left = time_left(elapsed, done)
         if paced:
-            paced.note(done)
+            paced.record_share_done(done)
             left = paced.time_left(done)
         bars.update(row, description=escape_for_terminal(words), completed=done, left=left)
 
     with _activate(bars):
-        yield report
+        yield update_bar
 
 
 @contextmanager
@@ -241,7 +241,7 @@ def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Ite
     for name, duration in tasks:
         rows.append(bars.add_task(name, total=duration, visible=not many, start=False))
 
-    def report(index: int, t: float) -> None:
+    def update_run_bars(index: int, t: float) -> None:
         row = rows[index]
         if t > 0.0 and not bars.tasks[row].started:
             bars.start_task(row)
@@ -250,7 +250,7 @@ def report_runs(tasks: Sequence[tuple[str, float]], several: bool = True) -> Ite
         bars.update(all_runs, completed=sum(bars.tasks[one].completed for one in rows))
 
     with _activate(bars):
-        yield report
+        yield update_run_bars
 
 
 def _ignore_progress(index: int, t: float) -> None:
@@ -260,7 +260,7 @@ def _ignore_progress(index: int, t: float) -> None:
 def _report_starts(tasks: Sequence[tuple[str, float]]) -> RunReport:
     started: set[int] = set()
 
-    def report(index: int, t: float) -> None:
+    def print_run_start(index: int, t: float) -> None:
         if index in started or t <= 0.0:
             return
         started.add(index)
@@ -270,4 +270,4 @@ def _report_starts(tasks: Sequence[tuple[str, float]]) -> RunReport:
         else:
             print_progress(f"running {name}")
 
-    return report
+    return print_run_start

@@ -91,7 +91,7 @@ class Outcome:
     error: str | None = None
 
     @property
-    def code(self) -> Exit:
+    def exit_code(self) -> Exit:
         """Exit code of the command for this run."""
         if self.content is None:
             if self.error:
@@ -151,7 +151,7 @@ def run_all(
                 speed = viewer.speed
             outcomes = _run_sequentially(planned, report, address, speed)
     _print_outcomes(outcomes, side_by_side)
-    return max(outcome.code for outcome in outcomes)
+    return max(outcome.exit_code for outcome in outcomes)
 
 
 def _print_outcomes(outcomes: Sequence[Outcome], side_by_side: bool) -> None:
@@ -169,7 +169,7 @@ def _print_outcomes(outcomes: Sequence[Outcome], side_by_side: bool) -> None:
             finished.append(run)
     if side_by_side:
         comparing.compare_runs(finished)
-    if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
+    if any(outcome.exit_code == Exit.INTERRUPTED for outcome in outcomes):
         if finished:
             print_error("interrupted; what was logged is kept")
         else:
@@ -346,7 +346,7 @@ def _run_sequentially(
             break
         outcomes.append(run_task(task, partial(report, index), scenario, viewer, speed))
         report(index, task.duration)
-        if outcomes[-1].code == Exit.INTERRUPTED:
+        if outcomes[-1].exit_code == Exit.INTERRUPTED:
             break
     return outcomes
 
@@ -361,7 +361,7 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
     with ignored_signals():  # Child processes inherit ignored signals.
         stop = context.Event()
         reached = context.Array("d", len(tasks))
-    arguments = (stop, reached, trust.current_trust())
+    arguments = (stop, reached, trust.trusted_folder_list())
     with ProcessPoolExecutor(jobs, context, _start_worker, arguments) as pool:
         with ignored_signals():
             futures = [pool.submit(_run_in_worker, i, task) for i, task in enumerate(tasks)]
@@ -415,7 +415,7 @@ def _exit_with_parent() -> None:
 
 
 def _run_in_worker(index: int, task: Task) -> Outcome:
-    def report(t: float) -> None:
+    def store_time_reached(t: float) -> None:
         _reached[index] = t
         if _stop.is_set():
             raise KeyboardInterrupt
@@ -423,7 +423,7 @@ def _run_in_worker(index: int, task: Task) -> Outcome:
     with _at_work:
         if _stop.is_set():
             return Outcome(task)
-        return run_task(task, report)
+        return run_task(task, store_time_reached)
 
 
 _stop: Event

@@ -7,7 +7,7 @@ from itertools import islice, starmap
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, print_error, print_lines
-from boatsim.cli.metric_table import print_rows
+from boatsim.cli.metric_table import print_text_table
 from boatsim.cli.progress import show_task_progress
 from boatsim.sweeps import diagnoses
 from boatsim.sweeps.axes import parse_axis
@@ -74,18 +74,18 @@ def run_sweep(
     _print_results(results, out)
     if complete:
         return Exit.MET
-    done = len(results.numbers)
+    done = len(results.run_numbers)
     print_error(f"interrupted after {done} of {plan.run_count} runs; the same command continues")
     return Exit.INTERRUPTED
 
 
 def _print_results(results: Results, out: Path) -> None:
     for table in result_tables(results):
-        print_rows(table.title, table.head, blank_repeats(table)[:MOST_ROWS], table.left)
+        print_text_table(table.title, table.head, blank_repeats(table)[:MOST_ROWS], table.left)
         if len(table.rows) > MOST_ROWS:
             print_lines([f"{len(table.rows) - MOST_ROWS} more rows are in report.html"])
     if failed := int(results.failed_mask.sum()):
-        print_lines([f"{failed} of {len(results.numbers)} runs failed:"])
+        print_lines([f"{failed} of {len(results.run_numbers)} runs failed:"])
         for reason, count in islice(results.failure_counts.items(), MOST_REASONS):
             print_lines([f"  {count} times: {reason}"])
     print_lines([f"written to {out}: sweep.parquet, report.html"])
@@ -124,7 +124,7 @@ def diagnose_each(
         if causes is None:
             causes = _format_causes(entry)
         rows.append([str(paths[number]), entry.get("verdict", "failed"), causes])
-    print_rows("Separate diagnoses", ["recording", "verdict", "causes"], rows[:MOST_ROWS], 3)
+    print_text_table("Separate diagnoses", ["recording", "verdict", "causes"], rows[:MOST_ROWS], 3)
     if len(rows) > MOST_ROWS:
         print_lines([f"{len(rows) - MOST_ROWS} more rows are in {diagnoses.NAME}"])
     verdicts = Counter(row[1] for row in rows)

@@ -21,7 +21,7 @@ Law = Callable[[Complex], tuple[Complex, Complex]]
 HIGHEST = 1e3  # [rad/s] highest crossover of a continuous loop
 
 
-def projection_share(square: float, along: float, radius: float, tolerance: float) -> float:
+def projection_factor(square: float, along: float, radius: float, tolerance: float) -> float:
     """Return the factor by which the projection operator of adaptive control corrects a rate.
 
     The projected rate of the estimate theta is y less this factor times theta. The convex function
@@ -53,7 +53,7 @@ def project_interval(value: float, rate: float, low: float, high: float, toleran
         tolerance: Projection tolerance.
     """
     off = value - 0.5 * (low + high)
-    return rate - projection_share(off * off, off * rate, 0.5 * (high - low), tolerance) * off
+    return rate - projection_factor(off * off, off * rate, 0.5 * (high - low), tolerance) * off
 
 
 @dataclass
@@ -317,8 +317,8 @@ def l1_norm(system: LinearSystem) -> float:
     return float(np.max(l1_norm_of_outputs(system)))
 
 
-def l1_condition(norm: float, slope: float) -> float:
-    """Return the left side of the L1-norm stability condition: the norm times a slope.
+def l1_condition_value(norm: float, slope: float) -> float:
+    """Return the left side of the L1-norm stability condition, a norm times a slope.
 
     Below 1 the adaptive loop is bounded for uncertainties of at most this slope.
 
@@ -486,7 +486,7 @@ class LoopChannel:
             gain: Ratio of the true to the assumed input gain of the plant.
         """
 
-        def response(s: Complex) -> Complex:
+        def frequency_response(s: Complex) -> Complex:
             held = (
                 -np.expm1(-2.0 * self.hold_s * s) / (2.0 * self.hold_s * s)
                 if self.hold_s > 0.0
@@ -495,7 +495,7 @@ class LoopChannel:
             actuator = gain * held / (1.0 + self.servo_lag_s * s)
             return np.asarray(self._controller_response(s) * actuator / (s * (s + self.damping)))
 
-        return response
+        return frequency_response
 
     def _controller_response(self, s: Complex) -> Complex:
         """Return -tau / (I0 position) with the filter loop of the controller closed."""
@@ -559,14 +559,14 @@ class SampledChannel:
         rate_gain = (1.0 - decay) / self.damping
         place_gain = (self.period - rate_gain) / self.damping
 
-        def response(s: Complex) -> Complex:
+        def frequency_response(s: Complex) -> Complex:
             z = np.exp(s * self.period)
             rate = rate_gain / (z - decay)
             place = (rate_gain * rate + place_gain) / (z - 1.0)
             to_place, to_rate = self.law(z)
             return np.asarray(gain * (to_place * place + to_rate * rate))
 
-        return response
+        return frequency_response
 
     def l1_norm(self, gain: float) -> float | None:
         """Return None: the L1-norm condition applies to continuous loops, and this one is sampled.

@@ -96,7 +96,7 @@ class Push(NamedTuple):
     N: float  # [N m]
 
 
-class Setting(NamedTuple):
+class OutboardSetting(NamedTuple):
     """Commands of two outboards: integer PWM of the motors and integer degrees of the servos."""
 
     pwm_port: int
@@ -152,7 +152,7 @@ def limit(value: float, low: float, high: float) -> float:
 
 
 @lean
-def sway_difference(q: Any, sway: float) -> float:
+def thrust_difference_for_sway(q: Any, sway: float) -> float:
     """Return the thrust difference D [N] of two outboards that meets a sway demand.
 
     Sway is an open-loop thrust.
@@ -180,7 +180,7 @@ def moment_arm(q: Any, angle: float) -> float:
 
 
 @lean
-def thrust_at(q: Any, pwm: float) -> float:
+def thrust_at_pwm(q: Any, pwm: float) -> float:
     """Return the nominal thrust [N] of an outboard at a signed PWM value.
 
     Args:
@@ -268,7 +268,7 @@ def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[flo
         spread: Thrust difference D [N].
         bound: Limit of |S| [N].
     """
-    ahead, astern = thrust_at(q, PWM_MAX), -thrust_at(q, -PWM_MAX)
+    ahead, astern = thrust_at_pwm(q, PWM_MAX), -thrust_at_pwm(q, -PWM_MAX)
     total = limit(total, -bound, bound)
     kept = limit(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
     spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
@@ -295,7 +295,10 @@ def command_outboards(
     port, starboard, angle = allocate(q, surge, difference, moment, room)
     write_outboard_commands(q, port, starboard, angle, sent)
     return nominal_wrench(
-        q, thrust_at(q, sent.pwm_port), thrust_at(q, sent.pwm_starboard), sent.steer_port_rad
+        q,
+        thrust_at_pwm(q, sent.pwm_port),
+        thrust_at_pwm(q, sent.pwm_starboard),
+        sent.steer_port_rad,
     )
 
 
@@ -373,11 +376,11 @@ class Outboards(CheckedParameters):
     )
 
     @property
-    def nominal(self) -> Nominal:
+    def nominal_properties(self) -> Nominal:
         """Nominal properties of the outboards as a record for compiled functions."""
         return Nominal(*(getattr(self, name) for name in Nominal._fields))
 
-    def sway_difference(self, sway: float) -> float:
+    def thrust_difference_for_sway(self, sway: float) -> float:
         """Return the thrust difference D [N] of two outboards for a sway demand.
 
         Sway is controlled in open loop.
@@ -385,7 +388,7 @@ class Outboards(CheckedParameters):
         Args:
             sway: Sway demand [m/s].
         """
-        return sway_difference(self.nominal, sway)
+        return thrust_difference_for_sway(self.nominal_properties, sway)
 
     def largest_goals(self) -> Mapping[str, float]:
         """Return the largest sway demand [m/s], which needs the largest thrust difference."""
@@ -397,7 +400,7 @@ class Outboards(CheckedParameters):
         Args:
             angle: Inward angle of both motors [rad].
         """
-        return moment_arm(self.nominal, angle)
+        return moment_arm(self.nominal_properties, angle)
 
     def neutral_angle(self) -> float:
         """Return the inward angle [rad] at which the outboards give sway without yaw moment."""
@@ -414,7 +417,7 @@ class Outboards(CheckedParameters):
             moment: Yaw moment [N m].
             room: Extension of the limit of the surge thrust [N].
         """
-        return Drive(*allocate(self.nominal, surge, difference, moment, room))
+        return Drive(*allocate(self.nominal_properties, surge, difference, moment, room))
 
     def pwm_for_thrust(self, thrust: float) -> int:
         """Return the signed integer PWM value at which an outboard has nearly a given thrust.
@@ -422,17 +425,17 @@ class Outboards(CheckedParameters):
         Args:
             thrust: Thrust [N].
         """
-        return round(pwm_for_thrust(self.nominal, thrust))
+        return round(pwm_for_thrust(self.nominal_properties, thrust))
 
-    def thrust(self, pwm: float) -> float:
+    def thrust_at_pwm(self, pwm: float) -> float:
         """Return the nominal thrust [N] of an outboard at a signed PWM value.
 
         Args:
             pwm: Signed PWM value.
         """
-        return thrust_at(self.nominal, pwm)
+        return thrust_at_pwm(self.nominal_properties, pwm)
 
-    def commands_for_thrusts(self, drive: Drive) -> Setting:
+    def commands_for_thrusts(self, drive: Drive) -> OutboardSetting:
         """Return the PWM and servo commands for thrusts and angle of the outboards.
 
         They are rounded, and limited to what motors and servos accept.
@@ -440,7 +443,7 @@ class Outboards(CheckedParameters):
         Args:
             drive: Thrusts and angle of the outboards.
         """
-        return Setting(
+        return OutboardSetting(
             self.pwm_for_thrust(drive.port),
             self.pwm_for_thrust(drive.starboard),
             round(degrees(drive.angle)),
@@ -452,9 +455,11 @@ class Outboards(CheckedParameters):
         Args:
             drive: Thrusts and angle of the outboards.
         """
-        return Push(*nominal_wrench(self.nominal, drive.port, drive.starboard, drive.angle))
+        return Push(
+            *nominal_wrench(self.nominal_properties, drive.port, drive.starboard, drive.angle)
+        )
 
-    def wrench_for_commands(self, setting: Setting) -> Push:
+    def wrench_for_commands(self, setting: OutboardSetting) -> Push:
         """Return the nominal force and yaw moment of the outboards under given commands.
 
         They are the input of a state predictor.
@@ -464,5 +469,9 @@ class Outboards(CheckedParameters):
         """
         angle = radians(setting.degrees)
         return self.nominal_wrench(
-            Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle)
+            Drive(
+                self.thrust_at_pwm(setting.pwm_port),
+                self.thrust_at_pwm(setting.pwm_starboard),
+                angle,
+            )
         )

@@ -103,7 +103,7 @@ class Controller(CheckedParameters):
 
 
 @dataclass
-class Steered(Controller):
+class HelmManoeuvre(Controller):
     """Base class of controllers for standard manoeuvres: an approach ahead, then helm angles.
 
     `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns
@@ -140,10 +140,10 @@ class Steered(Controller):
             self._course = sense.psi
         self._helm = 0.0
         if sense.t >= self.execute - 1e-9:
-            self._helm = self.helm(sense)
+            self._helm = self.helm_angle(sense)
         return self.commands_at_helm(self._helm)
 
-    def helm(self, sense: Sense) -> float:
+    def helm_angle(self, sense: Sense) -> float:
         """Return the present helm angle of a standard manoeuvre [rad].
 
         Args:

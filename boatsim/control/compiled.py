@@ -92,12 +92,12 @@ class CompiledController(Controller):
 
     def reset(self) -> None:
         """Reset all internal states of the controller."""
-        self._settings, self._memory = self.settings(), np.zeros(1, type(self).memory_type)
+        self._settings, self._memory = self.settings_array(), np.zeros(1, type(self).memory_type)
         self._sense, self._goal, self._sent = (
             np.zeros(1, t) for t in (SENSE, *self.record_types())
         )
 
-    def settings(self, count: int = 1) -> Records:
+    def settings_array(self, count: int = 1) -> Records:
         """Return the controller's parameters as an array of equal records for its compiled law.
 
         Args:
@@ -150,8 +150,8 @@ class CompiledController(Controller):
         return type(self).step is CompiledController.step
 
     @property
-    def memory_record(self) -> Any:
-        """State of the controller as a single record."""
+    def single_memory_record(self) -> Any:
+        """State (memory) of the controller as one numpy record, the only one of `memory`."""
         return self._memory[0]
 
 

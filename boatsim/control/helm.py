@@ -6,7 +6,7 @@ from math import isnan, nan, pi, radians
 from typing import ClassVar
 
 from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
-from boatsim.control.identification import Forgetting, Ship
+from boatsim.control.identification import Forgetting, IdentifiedShip
 from boatsim.errors import BadInput
 from boatsim.physics.base import param
 
@@ -139,7 +139,7 @@ class LearningHelm(Forgetting, Helm):
     def reset(self) -> None:
         """Reset the autopilot's identification to the nominal ship."""
         super().reset()
-        self.ship = Ship(self, self.nominal_yaw, self.nominal_roll)
+        self.ship = IdentifiedShip(self, self.nominal_yaw, self.nominal_roll)
 
     def needs_roll(self) -> bool:
         """Return whether the autopilot reduces roll and so needs a measured roll angle."""

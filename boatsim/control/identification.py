@@ -37,7 +37,7 @@ class Forgetting(CheckedParameters):
 
 
 @dataclass
-class Estimator:
+class LeastSquaresEstimator:
     """Recursive least-squares estimator of theta in y = x'theta + noise, with forgetting.
 
     P(t+1) = P / lambda - alpha P x x' P / (1 + x'P x) + beta I - delta P^2
@@ -73,7 +73,7 @@ class Estimator:
         return float(y - x @ self.theta)
 
 
-class Ship:
+class IdentifiedShip:
     """Difference equations of yaw and roll over one period, identified separately.
 
     psi(k+1) = (1 + a2y) psi(k) - a2y psi(k-1) + b1y u(k) + b2y phi(k)
@@ -88,8 +88,8 @@ class Ship:
             yaw: (a2y, b1y, b2y).
             roll: (a1r, a2r, b1r, b2r).
         """
-        self._yaw = Estimator(np.array(yaw), law)
-        self._roll = Estimator(np.array([*roll, 0.0, 0.0]), law)
+        self._yaw = LeastSquaresEstimator(np.array(yaw), law)
+        self._roll = LeastSquaresEstimator(np.array([*roll, 0.0, 0.0]), law)
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
 
     @property
@@ -125,7 +125,7 @@ class Ship:
             )
         )
 
-    def matrices(self) -> tuple[Array, Array]:
+    def state_space_matrices(self) -> tuple[Array, Array]:
         """Return state-space matrices A (4, 4) and B (4,) of the identified ship.
 
         The state is (psi, psi one period ago, phi, phi one period ago), the input the rudder angle.

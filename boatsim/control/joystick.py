@@ -14,7 +14,7 @@ from boatsim.control.allocation import (
     command_outboards,
     integrate_heading,
     limit,
-    sway_difference,
+    thrust_difference_for_sway,
 )
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
@@ -90,7 +90,7 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
         surge = surge_force(q, m, s, g.surge_mps)
         room = q.pole * q.mass * abs(g.surge_mps)
         m.X, _, m.N = command_outboards(
-            q, surge, sway_difference(q, g.sway_mps), moment, room, sent[b]
+            q, surge, thrust_difference_for_sway(q, g.sway_mps), moment, room, sent[b]
         )
         m.acted = 1.0
 
@@ -145,7 +145,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw and surge, and the reference motion."""
-        yaw, surge = self.memory_record["yaw"], self.memory_record["surge"]
+        yaw, surge = self.single_memory_record["yaw"], self.single_memory_record["surge"]
         return {
             "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
             "sigma_surge_N": Estimate(float(surge["sigma"]), nan, nan),

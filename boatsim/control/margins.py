@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import degrees
 
-from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
+from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition_value, loop_margins
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class, shipped_content_names, snake_case
 
@@ -117,7 +117,7 @@ def _format_l1_condition(name: str, rows: list[Row]) -> str:
     norm, needed = max(
         (row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed
     )
-    value = l1_condition(norm, needed)
+    value = l1_condition_value(norm, needed)
     verdict = "met" if value < 1.0 else "not met (it is sufficient, not necessary)"
     return (
         f"{name}: L1 norm {norm:.3f} s covers uncertainty slopes below {1.0 / norm:.2f} 1/s; "

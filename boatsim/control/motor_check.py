@@ -53,7 +53,7 @@ class Found(NamedTuple):
 
 
 @dataclass
-class Train:
+class PulseTrain:
     """Train of thrust pulses of a motor check, and the sensor readings during it.
 
     The motors rest between the pulses and all pulses have the same length, so that the transients
@@ -72,7 +72,7 @@ class Train:
         for sense in (1, -1, -1, 1):
             self.senses += [sense] * self.pulse + still
 
-    def add_reading(self, rate: float, felt: float) -> None:
+    def add_imu_readings(self, rate: float, felt: float) -> None:
         """Append gyro and accelerometer readings at the begin of a period to a pulse train.
 
         After the last period, those at its end are appended too.
@@ -200,11 +200,11 @@ class MotorCheck:
         length = self.shortest
         for pair in range(self.most):
             for side in (PORT, STARBOARD):
-                train = Train(round(length / self.period), round(self.rest / self.period))
+                train = PulseTrain(round(length / self.period), round(self.rest / self.period))
                 for sense in train.senses:
-                    train.add_reading(*self._reading)
+                    train.add_imu_readings(*self._reading)
                     yield Pulse(sense, side)
-                train.add_reading(*self._reading)
+                train.add_imu_readings(*self._reading)
                 self._found.append(
                     train.fit_pulse_response(
                         self.period, self.lag, self.drift, 1 if side == STARBOARD else -1

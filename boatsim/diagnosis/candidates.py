@@ -44,7 +44,7 @@ PLACEHOLDERS = {
 
 
 @dataclass(frozen=True)
-class Library:
+class CandidateLibrary:
     """Candidate effects of one diagnosis: those tested, those excluded, and the reasons.
 
     A candidate effect is a force, actuator fault or sensor error that the vessel model may lack.
@@ -61,7 +61,7 @@ class Library:
     inapplicable: Mapping[str, str]  # effects that cannot act on this vessel -> what is missing
 
     @property
-    def compiled(self) -> tuple[Effect, ...]:
+    def compiled_effects(self) -> tuple[Effect, ...]:
         """All effects compiled into the vessel program in addition to the vessel's own effects.
 
         These are the candidate effects, excluded ones included, and the placeholders for terms
@@ -70,7 +70,7 @@ class Library:
         return (*self.entries, *self.placeholders)
 
     @property
-    def tested(self) -> tuple[str, ...]:
+    def tested_names(self) -> tuple[str, ...]:
         """Names of the candidate effects that the diagnosis tests: all that are not excluded."""
         return tuple(e.name for e in self.entries if e.name not in self.excluded)
 
@@ -83,12 +83,12 @@ class _Source(NamedTuple):
     requested: bool  # by the vessel or the user
 
 
-def library_for(
+def candidate_library(
     vessel: Vessel,
     own: Sequence[str] = (),
     facts: Mapping[str, object] | None = None,
     columns: Sequence[str] | None = None,
-) -> Library:
+) -> CandidateLibrary:
     """Return the candidate effects that a diagnosis may test on a vessel.
 
     Effects that cannot act on the vessel are left out. Effects excluded by a fact, by the vessel
@@ -143,7 +143,9 @@ def library_for(
                 excluded[effect.name] = reason
     together = replace(vessel, effects=(*vessel.effects, *entries.values()))
     check_bindings(together, f"{vessel.name}: library")
-    return Library(tuple(entries.values()), placeholders(vessel), excluded, inapplicable)
+    return CandidateLibrary(
+        tuple(entries.values()), placeholder_effects(vessel), excluded, inapplicable
+    )
 
 
 def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
@@ -157,7 +159,7 @@ def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
     return reasons
 
 
-def placeholders(vessel: Vessel) -> tuple[Effect, ...]:
+def placeholder_effects(vessel: Vessel) -> tuple[Effect, ...]:
     """Return placeholder effects that can be set to terms found by symbolic regression.
 
     Only the kinds that can act on the vessel are returned, at zero effect.
@@ -352,7 +354,7 @@ def instantiate_neutral_effect(
     return kind.from_settings(settings | dict(given or {}))
 
 
-def candidate_names_except(library: Library, without: Sequence[str]) -> tuple[str, ...]:
+def candidate_names_except(library: CandidateLibrary, without: Sequence[str]) -> tuple[str, ...]:
     """Return the names of the tested candidate effects except the given ones.
 
     The excluded effects stay in the compiled program, so that nothing has to be compiled again.
@@ -364,14 +366,14 @@ def candidate_names_except(library: Library, without: Sequence[str]) -> tuple[st
     Raises:
         BadInput: A name does not exist.
     """
-    tested = library.tested
+    tested = library.tested_names
     for name in without:
         if name not in tested and name not in shipped_content_names("effect"):
             raise BadInput(unknown_name_message("--without", name, tested))
-    return tuple(n for n in tested if n not in without and base_name(n) not in without)
+    return tuple(n for n in tested if n not in without and name_without_prefixes(n) not in without)
 
 
-def base_name(name: str) -> str:
+def name_without_prefixes(name: str) -> str:
     """Return the name of a candidate effect without the prefixes that make repeated effects unique.
 
     For example, `further_wind` becomes `wind`.
@@ -442,7 +444,9 @@ def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
         vessel: Vessel file.
         names: Names of candidates.
     """
-    return Program(vessel, tuple(e for e in library_for(vessel).compiled if e.name in names))
+    return Program(
+        vessel, tuple(e for e in candidate_library(vessel).compiled_effects if e.name in names)
+    )
 
 
 def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
@@ -464,6 +468,6 @@ def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
         else:
             own.append(effect)
     nominal = replace(vessel, effects=tuple(own), found=())
-    candidates = {e.name: e for e in library_for(nominal).compiled} | found
+    candidates = {e.name: e for e in candidate_library(nominal).compiled_effects} | found
     program = Program(nominal, tuple(candidates.values()))
     return program, tuple(name for name in candidates if name in found)

@@ -52,13 +52,13 @@ def _evaluated_once(score: Callable[[Array], float]) -> Callable[[Array], float]
     """The score, evaluated only once at each point, because a search returns to its points."""
     known: dict[bytes, float] = {}
 
-    def evaluate(x: Array) -> float:
+    def score_from_cache(x: Array) -> float:
         key = x.tobytes()
         if key not in known:
             known[key] = score(x)
         return known[key]
 
-    return evaluate
+    return score_from_cache
 
 
 def _search_along(
@@ -66,15 +66,20 @@ def _search_along(
 ) -> tuple[float, Array]:
     """The best of x, a step to either side along a coordinate, and the parabola's maximum."""
 
-    def score_at(by: float) -> tuple[float, Array]:
+    def score_after_step(by: float) -> tuple[float, Array]:
         there = x.copy()
         there[j] += by
         return score(there), there
 
-    above, below = score_at(step), score_at(-step)
+    above, below = score_after_step(step), score_after_step(-step)
     bend = above[0] - 2.0 * best + below[0]
     top = step if above[0] > below[0] else -step
     if bend < FLAT:
         top = 0.5 * step * (below[0] - above[0]) / bend
-    options = [(best, x), score_at(float(np.clip(top, -reach * step, reach * step))), above, below]
+    options = [
+        (best, x),
+        score_after_step(float(np.clip(top, -reach * step, reach * step))),
+        above,
+        below,
+    ]
     return max(options, key=lambda option: option[0])

@@ -90,7 +90,7 @@ def cross_validated_correlation_time(
     for factor in (0.5, 2.0):
         seconds, before = usual, at_usual
         for _ in range(problem.config.fit.correlation_time_steps):
-            if budget is not None and budget.spent:
+            if budget is not None and budget.is_spent:
                 break
             after = cross_validation_errors(problem, found, factor * seconds)
             if not errors_clearly_fell(after, before, problem.config):

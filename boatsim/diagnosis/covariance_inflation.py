@@ -26,7 +26,7 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
         found: Converged fit of the vessel model with some candidate effects.
     """
     config = problem.config.fit
-    blocks = list(blocks_of_rows(problem, config.stretch * found.levels.time_constant))
+    blocks = list(blocks_of_whitened_errors(problem, config.stretch * found.levels.time_constant))
     if len(blocks) < config.fewest_stretches or not found.free:
         return found
     on = problem.program.effect_switches(found.effects)
@@ -42,7 +42,7 @@ def inflate_covariance(problem: Problem, found: Fit) -> Fit:
     return replace(found, covariance=found.covariance * np.outer(wider, wider))
 
 
-def blocks_of_rows(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
+def blocks_of_whitened_errors(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
     """Yield the indices of the whitened prediction errors that lie in each stretch of recordings.
 
     A stretch is a short interval of given duration. Errors of different stretches count as

@@ -35,7 +35,7 @@ class FittedTerm:
 
 
 @dataclass(frozen=True)
-class Description:
+class SymbolicDescription:
     """Formula that symbolic regression found for a force that no candidate effect explains.
 
     It contains all terms, and the fit with those terms that also hold for held-out recordings.
@@ -46,6 +46,6 @@ class Description:
     left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
     complete: bool = True  # whether terms were sought until the end, not until the budget was spent
 
-    def effects(self) -> Mapping[str, SymbolicTerm]:
+    def validated_terms(self) -> Mapping[str, SymbolicTerm]:
         """Return the symbolic terms that hold for held-out recordings, by name of the effect."""
         return {w.term.name: w.term for w in self.terms if w.carries}

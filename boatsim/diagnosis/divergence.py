@@ -75,7 +75,7 @@ def raise_latent_force_level(problem: Problem, recordings: Sequence[MappedRecord
     return replace(fit, evidence=passes.log_likelihood)
 
 
-def divergences(
+def find_divergences(
     problem: Problem, recordings: Sequence[MappedRecording], forces: Sequence[MissingForce]
 ) -> tuple[Divergence, ...]:
     """Return the time and axis at which the nominal vessel model stops following each recording.

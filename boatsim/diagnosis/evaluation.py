@@ -60,7 +60,9 @@ def compared_fits(ranking: Ranking) -> dict[str, Fit]:
     return dict(zip(MODELS, fits, strict=True))
 
 
-def evaluate(problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]) -> Evaluation:
+def compare_models(
+    problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording]
+) -> Evaluation:
     """Compare the nominal, the recalibrated and the patched vessel model over all recordings.
 
     Free runs (simulations with the recorded commands alone) give the errors, and the smoothed

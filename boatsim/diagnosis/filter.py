@@ -15,10 +15,10 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.diagnosis.input_noise import (
+    axes_with_measured_force,
     input_noise_density,
-    interpolate_measured,
-    measured_axes,
-    measured_inputs,
+    interpolate_measured_inputs,
+    measured_input_indices,
 )
 from boatsim.diagnosis.recent_results import RecentResults
 from boatsim.diagnosis.work import COVARIANCE, DERIVATIVES, SMOOTHER, WorkCount
@@ -119,12 +119,12 @@ class FilterPass:
     steps: Array  # (N,) integration steps [s]
 
     @cached_property
-    def errors(self) -> RecentResults[Array]:
+    def whitened_errors(self) -> RecentResults[Array]:
         """Latest whitened prediction errors that were computed with the gains of this pass."""
         return RecentResults(KEPT_ERRORS)
 
     @property
-    def log_density(self) -> float:
+    def log_density_at_predictions(self) -> float:
         """Log density of measurements that would be equal to the filter's predictions.
 
         It depends on the predicted covariances only, not on the prediction errors, and is known up
@@ -191,12 +191,12 @@ class MappedRecording:
             object.__setattr__(self, "command_values", values)
 
     @cached_property
-    def initial(self) -> InitialState:
+    def initial_state_prior(self) -> InitialState:
         """Prior of the Kalman filter's state at the first row of the recording."""
         return self.specified_initial or _estimated_initial(self)
 
     @property
-    def inputs(self) -> Inputs:
+    def times_and_commands(self) -> Inputs:
         """Row times and commands of the recording in the form that the compiled functions take."""
         return Inputs(self.times, self.command_times, self.command_values)
 
@@ -213,12 +213,12 @@ class MappedRecording:
         return RecentResults(KEPT_FREE_RUNS)
 
     @cached_property
-    def inertia(self) -> Array:
+    def inertia_with_added_mass(self) -> Array:
         """(NQ,) mass or moment of inertia of the nominal hull with added mass [kg, kg m^2]."""
         return inertia_with_added_mass(self.program, self.values, self.program.effect_switches())
 
     @cached_property
-    def step(self) -> float:
+    def largest_step(self) -> float:
         """Largest integration step [s] of the Kalman filter for this recording.
 
         It is limited by the usual step, by stability and by the oscillations of the hull.
@@ -235,7 +235,7 @@ class MappedRecording:
         return hull_time_scales(self.program, self.values, self.commands[0], self.config)
 
     @property
-    def stiff(self) -> bool:
+    def is_stiff(self) -> bool:
         """Whether the fastest motion of the hull decays within one sample of the recording.
 
         The damping of such a hull influences the gains of the Kalman filter most.
@@ -268,9 +268,9 @@ class MappedRecording:
         gains = np.zeros((n, channels, self.program.module.NZ))
         scale = np.zeros((n, channels))
         if about is None:
-            state = len(self.initial.mean)
+            state = len(self.initial_state_prior.mean)
             transitions = np.zeros((n, state, state))
-            steps = np.full(n, self.step)
+            steps = np.full(n, self.largest_step)
         else:
             transitions = _writable(about.transitions)
             steps = _writable(about.steps)
@@ -311,7 +311,9 @@ class MappedRecording:
             about: Pass whose gains, scale and integration steps are used.
         """
         key = _key_of(values, on, levels)
-        return about.errors.result(key, lambda: self._whitened_errors(values, on, levels, about))
+        return about.whitened_errors.result(
+            key, lambda: self._whitened_errors(values, on, levels, about)
+        )
 
     def _whitened_errors(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
@@ -338,22 +340,26 @@ class MappedRecording:
             levels: Levels of sensor noise and of the latent (unmodelled) force.
         """
         n, channels = self.measured.shape
-        size, state, nq = self.program.module.NZ, len(self.initial.mean), self.program.module.NQ
+        size, state, nq = (
+            self.program.module.NZ,
+            len(self.initial_state_prior.mean),
+            self.program.module.NQ,
+        )
         arrays = PassArrays(
             np.zeros((n, state, state)),
-            np.full(n, self.step),
+            np.full(n, self.largest_step),
             np.zeros((n, channels, size)),
             np.zeros((n, channels)),
             np.zeros((n, channels)),
         )
         means, covariances = np.zeros((n, size)), np.zeros((n, size, size))
         transitions, predicted = np.zeros((n, size, size)), np.zeros((n, size))
-        gains, rates = np.zeros_like(transitions), self.initial.rates
+        gains, rates = np.zeros_like(transitions), self.initial_state_prior.rates
         force, _ = self.latent_force_rms(values, on, levels)
         for _ in range(self.config.smoother_passes):
             keep = FilterHistory(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
-            self.program.functions.smooth_states(
+            self.program.estimation_functions.smooth_states(
                 keep, gains, self.times, self._latent_force(force, levels), values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
@@ -394,8 +400,8 @@ class MappedRecording:
         nq = self.program.module.NQ
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
-        self.program.functions.simulate_intervals(
-            self.inputs,
+        self.program.estimation_functions.simulate_intervals(
+            self.times_and_commands,
             self.config.free_run_step,
             VesselNumbers(rigid_body_values(values), values, on),
             np.array(starts),
@@ -452,7 +458,9 @@ class MappedRecording:
             Rms (NQ,) [N, N m], and rms (NQ,) at the first row.
         """
         force = np.asarray(
-            levels.force * inertia_with_added_mass(self.program, values, on) / self.inertia
+            levels.force
+            * inertia_with_added_mass(self.program, values, on)
+            / self.inertia_with_added_mass
         )
         return force, np.maximum(force, levels.initial_force)
 
@@ -472,7 +480,7 @@ class MappedRecording:
         nq = self.program.module.NQ
         sds = [levels.sensors[f] * self.noise_scale[f] for f in self.families]
         noise = np.array([sd**2 for sd in sds])
-        covariance = self.initial.covariance.copy()
+        covariance = self.initial_state_prior.covariance.copy()
         for c, code in enumerate(self.codes):
             if code < nq:
                 covariance[code, code] = noise[c]
@@ -482,14 +490,14 @@ class MappedRecording:
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
         if rates is None:
-            rates = self.initial.rates
-        found = self.program.functions.kalman_filter(
-            self.inputs,
+            rates = self.initial_state_prior.rates
+        found = self.program.estimation_functions.kalman_filter(
+            self.times_and_commands,
             Measurements(self.measured, self.codes, noise),
             VesselNumbers(rigid_body_values(values), values, on),
             self._latent_force(force, levels),
-            FilterStart(self.initial.mean, covariance, rates),
-            PassOptions(self.step, full, fresh, keep is not None),
+            FilterStart(self.initial_state_prior.mean, covariance, rates),
+            PassOptions(self.largest_step, full, fresh, keep is not None),
             arrays,
             keep or _no_history(),
         )
@@ -669,7 +677,7 @@ def map_recording(
         signals = _with_leading_samples(recording.t, recording.signals, vessel)
         commands = clipped_recorded_commands(vessel, signals, len(recording))
         if recording.orders is None:
-            commands = interpolate_measured(commands, measured_inputs(vessel))
+            commands = interpolate_measured_inputs(commands, measured_input_indices(vessel))
     facts = merged_facts(vessel, recording)
     mapped = MappedRecording(
         recording.name,
@@ -710,7 +718,7 @@ def _speed_of_share(mapped: MappedRecording, share: float) -> float:
                 speeds.append(float(np.quantile(np.abs(rates), 1.0 - share)))
     if speeds:
         return max(speeds)
-    return float(np.sqrt(mapped.initial.covariance[len(axes), len(axes)]))
+    return float(np.sqrt(mapped.initial_state_prior.covariance[len(axes), len(axes)]))
 
 
 def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]) -> None:
@@ -745,7 +753,7 @@ def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array,
     t = recording.orders.t
     signals = _with_leading_samples(t, recording.orders.signals, vessel)
     commands = clipped_recorded_commands(vessel, signals, len(t))
-    return command_changes(t, interpolate_measured(commands, measured_inputs(vessel)))
+    return command_changes(t, interpolate_measured_inputs(commands, measured_input_indices(vessel)))
 
 
 def _with_leading_samples(
@@ -778,10 +786,10 @@ def hull_time_scales(
         command: (K,) commands in force.
         config: Settings of the filter.
     """
-    code, on = program.functions, program.effect_switches()
+    code, on = program.estimation_functions, program.effect_switches()
     nq = code.NQ
     constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
-    actuators = np.zeros(program.held_size)
+    actuators = np.zeros(program.actuator_signal_size)
     code.compute_mass_constants(rigid_body_values(values), values, on, constants)
     code.settle_actuators(command, memory, values, on, actuators)
     slopes = np.zeros((nq, 2 * nq))
@@ -810,7 +818,7 @@ def inertia_with_added_mass(program: Program, values: Array, on: Array) -> Array
         values: Parameter values of the vessel model.
         on: (effects,) 1 for the effects that act, else 0.
     """
-    code = program.functions
+    code = program.estimation_functions
     constants = np.zeros(code.K)
     code.compute_mass_constants(rigid_body_values(values), values, on, constants)
     diagonal = constants[-MASS_ENTRIES:][_places(tuple(program.vessel.dof))]
@@ -992,7 +1000,7 @@ def prior_noise_levels(
         )
     noise = shared_noise(vessel, recordings, config)
     white = np.zeros(0)
-    if measured_axes(vessel, axes).any():
+    if axes_with_measured_force(vessel, axes).any():
         share = config.load.input_noise_time * time_constant
-        white = np.where(measured_axes(vessel, axes), share * force**2, 0.0)
+        white = np.where(axes_with_measured_force(vessel, axes), share * force**2, 0.0)
     return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force, white)

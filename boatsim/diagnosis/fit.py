@@ -7,7 +7,7 @@ from math import erf, log, sqrt
 import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_level_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_noise_level_prior
 from boatsim.diagnosis.problem import (
     FilterPasses,
     Fit,
@@ -85,7 +85,7 @@ def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
         name: Name of one of its effects.
     """
     effects = tuple(n for n in found.effects if n != name)
-    free = problem.parameters(effects)
+    free = problem.free_parameters(effects)
     theta = free_parameter_values(free, found.values())
     nothing = prior_arrays(free).mean
     on = problem.program.effect_switches(effects)
@@ -124,7 +124,7 @@ class ParameterSpace:
         self.mean, self.sd, self.low, self.high = prior_arrays(free)
 
     def clip(self, theta: Array) -> Array:
-        """Return parameter values (F,) limited to their bounds."""
+        """Return the values (F,) of the F free parameters, each limited to its bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
     def damped_step(self, theta: Array, A: Array, g: Array, damping: float) -> Array:
@@ -282,7 +282,7 @@ def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -
     information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
     covariance = hypothesis.space.covariance(information)
     evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
-    evidence += log_level_prior(problem, start.levels)
+    evidence += log_noise_level_prior(problem, start.levels)
     evidence += log_truncation_probability(start.free, here.theta, covariance)
     return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
 
@@ -349,7 +349,7 @@ def broyden_update(J: Array, change: Array, step: Array) -> Array:
 
 def _derivatives(hypothesis: _Hypothesis, here: _Point) -> tuple[Array, Array]:
     """Derivatives of the whitened errors, and the rest of the gradient that they do not explain."""
-    if not hypothesis.problem.stiff:
+    if not hypothesis.problem.is_stiff:
         J = jacobian(
             hypothesis.problem,
             hypothesis.free,

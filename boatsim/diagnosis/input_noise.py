@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.config import LoadConfig
-from boatsim.physics.base import AXES, Array, Force, motion
+from boatsim.physics.base import AXES, Array, Force, make_motion
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, TimedCommands
 
@@ -41,13 +41,13 @@ def input_noise_density(
     return density
 
 
-def measured_inputs(vessel: Vessel) -> list[int]:
+def measured_input_indices(vessel: Vessel) -> list[int]:
     """Return the places of channels with measured forces among the inputs of a vessel."""
     channels = {channel for channel, _ in _measured_inputs(vessel, AXES)}
     return [i for i, name in enumerate(vessel.inputs) if name in channels]
 
 
-def interpolate_measured(inputs: Array, places: Sequence[int]) -> Array:
+def interpolate_measured_inputs(inputs: Array, places: Sequence[int]) -> Array:
     """Return inputs that are held until the next row, measured ones at their mean in between.
 
     A command is in force from its row to the next. A measured force is a sample of a continuous
@@ -66,7 +66,7 @@ def interpolate_measured(inputs: Array, places: Sequence[int]) -> Array:
     return found
 
 
-def measured_axes(vessel: Vessel, axes: Sequence[str]) -> NDArray[np.bool_]:
+def axes_with_measured_force(vessel: Vessel, axes: Sequence[str]) -> NDArray[np.bool_]:
     """Return along which axes a measured force acts, as an array (axes,).
 
     Args:
@@ -92,8 +92,8 @@ def _measured_inputs(vessel: Vessel, axes: Sequence[str]) -> Iterator[tuple[str,
 
 def _wrench_per_unit(effect: Force, role: str) -> Array:
     """Wrench (6,) per unit of one signal of an effect, for a hull at rest."""
-    at_one = effect.wrench(motion(), type(effect).signals(**{role: 1.0}))
-    at_zero = effect.wrench(motion(), type(effect).signals())
+    at_one = effect.wrench(make_motion(), type(effect).signals(**{role: 1.0}))
+    at_zero = effect.wrench(make_motion(), type(effect).signals())
     return np.asarray(np.subtract(at_one, at_zero), dtype=float)
 
 

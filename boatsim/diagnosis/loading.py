@@ -10,7 +10,7 @@ import numpy as np
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.accelerometer_clock import correct_pose_clock
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
-from boatsim.diagnosis.checks.command_range import with_range_of
+from boatsim.diagnosis.checks.command_range import widen_channel_ranges
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
@@ -19,7 +19,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress
 from boatsim.recordings.notes import NotesFile, notes_for
-from boatsim.recordings.run_folder import is_of_run, recording_file
+from boatsim.recordings.run_folder import is_in_run_folder, recording_file
 from boatsim.recordings.table import Recording, read
 
 THIRDS = ("first", "middle", "last")
@@ -41,7 +41,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Loaded:
+class LoadedRecordings:
     """Cleaned recordings, divided into fitted and held-out ones, with vessels and findings."""
 
     fitted: Sequence[Recording]
@@ -60,9 +60,9 @@ class Loaded:
         return self.vessels[self.fitted[0].path]
 
 
-def load(
+def load_recordings(
     request: Request, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
-) -> Loaded:
+) -> LoadedRecordings:
     """Read, check and clean the recordings of a diagnosis, and hold some of them out.
 
     Args:
@@ -87,7 +87,7 @@ def load(
         count = f"{len(paths)} recordings"
     for i, (path, name) in enumerate(zip(paths, _distinct_names(paths), strict=True)):
         report(f"reading {count}", i / len(paths))
-        parts, vessel = open_parts(path, request.vessel, request.load, config)
+        parts, vessel = open_recording_parts(path, request.vessel, request.load, config)
         for number, recording in enumerate(parts, 1):
             facts = {**request.facts, **recording.notes.facts}
             notes = replace(recording.notes, facts=facts)
@@ -105,7 +105,7 @@ def load(
     findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
     by_path: dict[Path | None, Vessel] = {}
     for recording, own, name in zip(opened, own_vessels, names, strict=True):
-        vessel = with_range_of(own, opened)
+        vessel = widen_channel_ranges(own, opened)
         by_path[recording.path] = vessel
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
@@ -113,7 +113,7 @@ def load(
         remarks += clean.remarks
     findings += check_clock_rate(opened, config.checks)
     fitted, held_out, note = split_recordings(cleaned[:first], cleaned[first:])
-    return Loaded(
+    return LoadedRecordings(
         fitted,
         held_out,
         by_path,
@@ -138,7 +138,7 @@ def _belong_to(vessel: str, file: NotesFile) -> bool:
     return vessels.load_vessel(vessel).path == noted.path
 
 
-def vessel_for(
+def vessel_of_recording_file(
     path: Path,
     vessel: str | None,
     load_conditions: Sequence[str],
@@ -193,7 +193,7 @@ def vessel_for(
     return vessels.load_vessel(alike[0], conditions, notes.settings)
 
 
-def open_parts(
+def open_recording_parts(
     path: Path,
     vessel: str | None,
     load_conditions: Sequence[str],
@@ -213,7 +213,7 @@ def open_parts(
     Raises:
         BadInput: The file or its vessel cannot be used.
     """
-    found = vessel_for(path, vessel, load_conditions, config)
+    found = vessel_of_recording_file(path, vessel, load_conditions, config)
     recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
     recording = correct_pose_clock(recording, found, config.checks)
     parts = []
@@ -244,10 +244,10 @@ def open_recording(
     Raises:
         BadInput: The file or its vessel cannot be used.
     """
-    found = vessel_for(path, vessel, load_conditions, config)
+    found = vessel_of_recording_file(path, vessel, load_conditions, config)
     recording = read(path, found.recorded_limits(), found.columns, found.turns_over)
     recording = correct_pose_clock(recording, found, config.checks)
-    found = with_range_of(found, [recording])
+    found = widen_channel_ranges(found, [recording])
     return data_cleaning.prepare_recording(recording, found, config.checks), found
 
 
@@ -332,7 +332,7 @@ def _distinct_names(paths: Sequence[Path]) -> list[str]:
     A file in the folder of a run has the name of that folder, if that distinguishes it.
     """
     whole = [path.resolve().with_suffix("") for path in paths]
-    folders = [path.parent if is_of_run(path) else path for path in whole]
+    folders = [path.parent if is_in_run_folder(path) else path for path in whole]
     for names in (folders, whole):
         for depth in range(1, MOST_FOLDERS + 1):
             short = ["/".join(path.parts[-depth:]) for path in names]

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
-from boatsim.diagnosis.checks.command_range import with_range_of
-from boatsim.diagnosis.checks.entry import column_sources, finding_entry, on_one_line
+from boatsim.diagnosis.checks.command_range import widen_channel_ranges
+from boatsim.diagnosis.checks.entry import column_sources, finding_entry, join_toml_lines
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.loading import Loaded, check_same_vessel, vessel_for
+from boatsim.diagnosis.loading import LoadedRecordings, check_same_vessel, vessel_of_recording_file
 from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.errors import BadInput
@@ -53,7 +53,7 @@ def check_files(
     """
     vessels: dict[Path | None, Vessel] = {}
     for path in runs:
-        vessels[path] = vessel_for(path, vessel, load_conditions)
+        vessels[path] = vessel_of_recording_file(path, vessel, load_conditions)
     check_same_vessel(list(vessels.values()))
     findings, refused, usable = list[Finding](), list[BadInput](), list[Recording]()
     prepared = list[Recording]()
@@ -67,8 +67,8 @@ def check_files(
     findings += check_clock_rate(prepared, DEFAULT.checks)
     if usable:
         try:
-            widened = {path: with_range_of(own, usable) for path, own in vessels.items()}
-            loaded = Loaded(usable, (), widened, "")
+            widened = {path: widen_channel_ranges(own, usable) for path, own in vessels.items()}
+            loaded = LoadedRecordings(usable, (), widened, "")
             question = set_up_estimation_problem(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
             if not compared:
@@ -131,13 +131,13 @@ def correction_hint(
     """
     for path in (*runs, *hold_out):
         try:
-            own = vessel_for(path, vessel, load_conditions)
+            own = vessel_of_recording_file(path, vessel, load_conditions)
             findings = run_checks.check_table(path, own, DEFAULT.checks)
         except BadInput:
             return ""
         for finding in findings:
             entry = finding_entry(finding, column_sources(finding.run, own))
             if entry["lines"]:
-                name, lines = entry["name"].replace("_", " "), on_one_line(entry["lines"])
+                name, lines = entry["name"].replace("_", " "), join_toml_lines(entry["lines"])
                 return f"; {LOG_NOT_BOAT}: {name}, write into recording.toml {lines}"
     return ""

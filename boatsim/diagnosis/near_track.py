@@ -12,7 +12,7 @@ from boatsim.recordings.table import Recording
 AXES = ("x_m", "y_m")
 
 
-def track_facts(
+def small_track_fact(
     recordings: Sequence[Recording], vessel: Vessel, config: LoadConfig = DEFAULT.load
 ) -> dict[str, object]:
     """Return the fact `track_m` if the boat stays within a few of its lengths, else nothing.

@@ -24,7 +24,7 @@ THIRD_DIFFERENCE = 20.0  # sum of the squared binomial coefficients of a third d
 FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
-def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
+def log_latent_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Return the log prior density of the levels of the latent (unmodelled) force.
 
     It is highest at the assumed disturbance level, and decreases faster below it than above.
@@ -39,7 +39,7 @@ def log_force_prior(problem: Problem, levels: NoiseLevels) -> float:
     return float(np.sum(-0.5 * deviation**2))
 
 
-def log_level_prior(problem: Problem, levels: NoiseLevels) -> float:
+def log_noise_level_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Return the log prior density of the latent force and of the noise of measured forces.
 
     Args:
@@ -48,7 +48,7 @@ def log_level_prior(problem: Problem, levels: NoiseLevels) -> float:
     """
     over = _log_input_noise(levels) - _log_input_noise(problem.ambient)
     noise = -0.5 * float(np.sum((over / problem.config.fit.input_noise_sd) ** 2))
-    return log_force_prior(problem, levels) + noise
+    return log_latent_force_prior(problem, levels) + noise
 
 
 def _log_input_noise(levels: NoiseLevels) -> Array:
@@ -119,7 +119,7 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
     k, n = len(searched), len(searched) + len(families)
     last = n + len(found.levels.force)
 
-    def fit_at_levels(x: Array) -> tuple[NoiseLevels, Array]:
+    def noise_levels_and_parameters(x: Array) -> tuple[NoiseLevels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
         sensors = dict(found.levels.sensors) | _sensor_noise(problem, families, x[k:n], specified)
@@ -129,18 +129,18 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
 
     about = problem.filter(found.free, found.theta, on, found.levels)
 
-    def score(x: Array) -> float:
-        levels, theta = fit_at_levels(x)
+    def log_posterior(x: Array) -> float:
+        levels, theta = noise_levels_and_parameters(x)
         deviation = float(np.sum(((theta[searched] - mean) / sd) ** 2))
         prior = -0.5 * (deviation + _noise_prior(problem, x[k:n], specified))
         likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
-        return likelihood + log_level_prior(problem, levels) + prior
+        return likelihood + log_noise_level_prior(problem, levels) + prior
 
     noise = _log_noise(found.levels, families)
     logs = [np.log(found.levels.force), _log_input_noise(found.levels)]
     begin = np.concatenate([found.theta[searched] / sd, noise, *logs])
-    _, x = maximize(score, begin, FORCE_STEP, enough, problem.config.fit)
-    levels, theta = fit_at_levels(x)
+    _, x = maximize(log_posterior, begin, FORCE_STEP, enough, problem.config.fit)
+    levels, theta = noise_levels_and_parameters(x)
     return replace(found, levels=levels, theta=theta)
 
 
@@ -162,36 +162,44 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
         sensed.append(_roughness(problem, family) or prior_levels.sensors[family])
     rough = np.log(np.array(sensed))
 
-    def levels(x: Array) -> NoiseLevels:
+    def noise_levels(x: Array) -> NoiseLevels:
         logs = x[n:last]
         sensors = dict(prior_levels.sensors) | _sensor_noise(problem, families, logs, specified)
         found = replace(prior_levels, force=_force_levels(problem, x[:n]), sensors=sensors)
         return _with_input_noise(found, x[last:])
 
-    def prior(x: Array) -> float:
+    def log_sensor_noise_prior(x: Array) -> float:
         return -0.5 * _noise_prior(problem, x[n:last], specified)
 
     def maximize_noise(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
-        def score(x: Array) -> float:
-            likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-            return likelihood + log_level_prior(problem, levels(x)) + prior(x)
+        def log_posterior(x: Array) -> float:
+            likelihood = problem.log_likelihood(found.free, found.theta, on, noise_levels(x), about)
+            return (
+                likelihood
+                + log_noise_level_prior(problem, noise_levels(x))
+                + log_sensor_noise_prior(x)
+            )
 
-        return maximize(score, x, step, enough, config)[1]
+        return maximize(log_posterior, x, step, enough, config)[1]
 
     low, high = specified - NOISE_START_RANGE, specified + NOISE_START_RANGE
     start = np.log(prior_levels.force) + FORCE_START
     x = np.concatenate([start, np.clip(rough, low, high), _log_input_noise(prior_levels)])
-    about = problem.filter(found.free, found.theta, on, levels(x))
+    about = problem.filter(found.free, found.theta, on, noise_levels(x))
     for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
-        begin = about.log_likelihood + log_level_prior(problem, levels(x)) + prior(x)
+        begin = (
+            about.log_likelihood
+            + log_noise_level_prior(problem, noise_levels(x))
+            + log_sensor_noise_prior(x)
+        )
         if np.isfinite(begin):
             break
         x[:n] += 1.0
-        about = problem.filter(found.free, found.theta, on, levels(x))
+        about = problem.filter(found.free, found.theta, on, noise_levels(x))
     x = maximize_noise(x, about, NOISE_STEP, config.rough_gain)
-    about = problem.filter(found.free, found.theta, on, levels(x))
+    about = problem.filter(found.free, found.theta, on, noise_levels(x))
     return replace(
-        found, levels=levels(maximize_noise(x, about, FINE_NOISE_STEP, config.fine_gain))
+        found, levels=noise_levels(maximize_noise(x, about, FINE_NOISE_STEP, config.fine_gain))
     )
 
 
@@ -212,17 +220,17 @@ def fit_latent_force_spectrum(problem: Problem, found: Fit) -> NoiseLevels:
     usual = np.log(problem.ambient.time_constant)
     about = problem.filter(found.free, found.theta, on, found.levels)
 
-    def levels(x: Array) -> NoiseLevels:
+    def noise_levels(x: Array) -> NoiseLevels:
         other = found.levels.with_other_correlation_time(float(np.exp(x[1])))
         return replace(other, force=other.force * np.exp(x[0]))
 
-    def score(x: Array) -> float:
+    def log_posterior(x: Array) -> float:
         prior = -0.5 * ((x[1] - usual) / config.correlation_time_sd) ** 2
-        likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
-        return likelihood + log_force_prior(problem, levels(x)) + float(prior)
+        likelihood = problem.log_likelihood(found.free, found.theta, on, noise_levels(x), about)
+        return likelihood + log_latent_force_prior(problem, noise_levels(x)) + float(prior)
 
     begin = np.array([0.0, np.log(found.levels.time_constant)])
-    return levels(maximize(score, begin, TIME_STEP, config.fine_gain, config)[1])
+    return noise_levels(maximize(log_posterior, begin, TIME_STEP, config.fine_gain, config)[1])
 
 
 def _roughness(problem: Problem, family: str) -> float:

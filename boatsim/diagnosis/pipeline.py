@@ -20,16 +20,16 @@ from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
-from boatsim.diagnosis.checks.rest import without_rest
-from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, without_pushes
+from boatsim.diagnosis.checks.rest import cut_intervals_at_rest
+from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, recordings_without_pushes
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.divergence import has_diverged
-from boatsim.diagnosis.evaluation import Evaluation, evaluate
+from boatsim.diagnosis.evaluation import Evaluation, compare_models
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Fit, Problem
@@ -45,9 +45,16 @@ from boatsim.diagnosis.report.incomplete import (
 from boatsim.diagnosis.report.results import collect_findings
 from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
-from boatsim.diagnosis.search.ranking import Baseline, Ranking, fit_baseline, rank
-from boatsim.diagnosis.symbolic.residual_description import describe as describe_residual
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term
+from boatsim.diagnosis.search.ranking import (
+    Baseline,
+    Ranking,
+    fit_baseline,
+    select_and_rank_candidates,
+)
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
+from boatsim.diagnosis.symbolic.residual_description import (
+    describe_residual_force as describe_residual,
+)
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.files import Value
 from boatsim.physics.program import Program
@@ -146,12 +153,12 @@ def diagnose(
         BadInput: A file, a name or a value cannot be used.
     """
     request = Request(runs, hold_out, vessel, load, library, without, horizon, facts or {})
-    loaded = loading.load(request, report_part_of(report, 0.0, LOADED), config)
+    loaded = loading.load_recordings(request, report_part_of(report, 0.0, LOADED), config)
     return diagnose_loaded(loaded, report_part_of(report, LOADED, 1.0), config)
 
 
 def diagnose_loaded(
-    loaded: Loaded, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
+    loaded: LoadedRecordings, report: Report = ignore_progress, config: DiagnosisConfig = DEFAULT
 ) -> Diagnosis:
     """Diagnose recordings that have been read: find and fit effects that the vessel model lacks.
 
@@ -166,7 +173,7 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
-    loaded = without_rest(loaded, config)
+    loaded = cut_intervals_at_rest(loaded, config)
     question = set_up_estimation_problem(loaded, config)
     given = loaded.findings
     report("compiling, or loading what was compiled before")
@@ -174,12 +181,12 @@ def diagnose_loaded(
     begin = time.perf_counter()
     with threadpool_limits(1, "blas"):
         report("comparing what the columns may mean", SELECTING[0] / 2)
-        findings = check(loaded, question)
+        findings = check_recordings(loaded, question)
         found = None
         with suppress(np.linalg.LinAlgError, FloatingPointError):
             if has_measured_input(loaded.vessel):
-                base = fit(question).recalibrated
-                loaded, question = leave_out_pushes(loaded, question, base)
+                base = fit_baseline_models(question).recalibrated
+                loaded, question = cut_unrecorded_pushes(loaded, question, base)
                 findings = (*findings, *loaded.findings[len(given) :])
             found = _fit_and_select(loaded, question, findings, begin, report)
         if found is None or not _is_finite(found.findings.answer):
@@ -189,33 +196,37 @@ def diagnose_loaded(
 
 
 def _fit_and_select(
-    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float, report: Report
+    loaded: LoadedRecordings,
+    question: Question,
+    findings: Sequence[Finding],
+    begin: float,
+    report: Report,
 ) -> Diagnosis | None:
     """Run all stages after the checks; None if the vessel's own fit does not follow."""
-    base = fit(question)
+    base = fit_baseline_models(question)
     if has_diverged(question.problem, base.recalibrated):
         return None
-    findings = (*findings, *ignored_commands(loaded, question, base))
-    selection = select(question, base, loaded, report_part_of(report, *SELECTING))
+    findings = (*findings, *find_ignored_commands(loaded, question, base))
+    selection = select_candidates(question, base, loaded, report_part_of(report, *SELECTING))
     given = loaded.findings
-    loaded, kept = leave_out_pushes(loaded, question, selection.ranking.best)
+    loaded, kept = cut_unrecorded_pushes(loaded, question, selection.ranking.best)
     if kept is not question:  # smaller pushes stand out beside a better model
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
-        selection = select(question, fit(question), loaded)
-    decision = decide(question, selection)
-    ranking = describe(question, decision, report_part_of(report, *DESCRIBING))
+        selection = select_candidates(question, fit_baseline_models(question), loaded)
+    decision = decide_causes(question, selection)
+    ranking = describe_unexplained_force(question, decision, report_part_of(report, *DESCRIBING))
     report("planning what to record next", DESCRIBING[1])
-    next_plan = plan(decision, ranking)
+    next_plan = plan_next_experiment(decision, ranking)
     report("free runs", EVALUATING)
     ranking = adopt_refitted_coefficients(question, decision, ranking)
-    evaluation = validate(question, decision, ranking)
+    evaluation = validate_on_held_out(question, decision, ranking)
     stages = Stages(decision, ranking, evaluation, next_plan)
     return _compose(loaded, question, findings, stages, begin)
 
 
 def _diagnose_without_fit(
-    loaded: Loaded, question: Question, findings: Sequence[Finding], begin: float
+    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], begin: float
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
@@ -238,7 +249,7 @@ class Stages(NamedTuple):
 
 
 def _compose(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     findings: Sequence[Finding],
     stages: Stages,
@@ -270,7 +281,7 @@ def _is_finite(answer: Answer) -> bool:
     return True
 
 
-def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
+def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Finding, ...]:
     """Return all findings of the quality checks of the recordings.
 
     Findings of single files are completed by faults that only a comparison with the vessel model
@@ -290,7 +301,9 @@ def check(loaded: Loaded, question: Question) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def leave_out_pushes(loaded: Loaded, question: Question, found: Fit) -> tuple[Loaded, Question]:
+def cut_unrecorded_pushes(
+    loaded: LoadedRecordings, question: Question, found: Fit
+) -> tuple[LoadedRecordings, Question]:
     """Cut short forces that no channel records out of recordings in which forces were measured.
 
     Args:
@@ -302,13 +315,15 @@ def leave_out_pushes(loaded: Loaded, question: Question, found: Fit) -> tuple[Lo
         The recordings without the rows of the pushes, and the same mapped; the arguments if there
         are none.
     """
-    kept = without_pushes(loaded, question.problem, question.held_out, found)
+    kept = recordings_without_pushes(loaded, question.problem, question.held_out, found)
     if kept is None:
         return loaded, question
     return kept, set_up_estimation_problem(kept, question.problem.config)
 
 
-def ignored_commands(loaded: Loaded, question: Question, base: Baseline) -> list[Finding]:
+def find_ignored_commands(
+    loaded: LoadedRecordings, question: Question, base: Baseline
+) -> list[Finding]:
     """Return findings about times in which the motion shows nothing of the commands.
 
     Args:
@@ -321,7 +336,7 @@ def ignored_commands(loaded: Loaded, question: Question, base: Baseline) -> list
     return check_ignored_commands(question.problem, base.nominal, recordings, names)
 
 
-def fit(question: Question) -> Baseline:
+def fit_baseline_models(question: Question) -> Baseline:
     """Fit the vessel model without candidate effects: as specified, and with refitted coefficients.
 
     Args:
@@ -333,8 +348,8 @@ def fit(question: Question) -> Baseline:
     return fit_baseline(question.problem)
 
 
-def select(
-    question: Question, base: Baseline, loaded: Loaded, report: Report = ignore_progress
+def select_candidates(
+    question: Question, base: Baseline, loaded: LoadedRecordings, report: Report = ignore_progress
 ) -> Selection:
     """Select the candidate effects that the recordings require.
 
@@ -349,23 +364,28 @@ def select(
         report: Receives the progress.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
-    budget = SearchBudget(problem.filtered, problem.config.select.budget)
-    ranking = rank(problem, candidates, held_out, report=report, base=base, budget=budget)
+    budget = SearchBudget(problem.work_count, problem.config.select.budget)
+    ranking = select_and_rank_candidates(
+        problem, candidates, held_out, report=report, base=base, budget=budget
+    )
     if "time_constant_s" in loaded.fitted[0].notes.ambient:
         return Selection(problem, ranking)
     least = problem.config.select.again_share * budget.used_work
-    if budget.spent or budget.remaining_work < least:
+    if budget.is_spent or budget.remaining_work < least:
         return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
     report("choosing the correlation time of the latent force", 1.0)
     again = select_correlation_time(problem, ranking.best, budget)
-    if budget.spent:
+    if budget.is_spent:
         return Selection(problem, _with_skipped(ranking, TIME_NOT_CHOSEN))
     if again is problem:
         return Selection(problem, ranking)
     report("selecting again with that correlation time", 1.0)
-    rest = budget.continued()
+    rest = budget.remaining_budget()
     try:
-        return Selection(again, rank(again, candidates, held_out, ranking.best, budget=rest))
+        return Selection(
+            again,
+            select_and_rank_candidates(again, candidates, held_out, ranking.best, budget=rest),
+        )
     except BudgetSpentError:  # the finished search is the better one
         return Selection(problem, _with_skipped(ranking, NOT_SELECTED_AGAIN))
 
@@ -375,7 +395,7 @@ def _with_skipped(ranking: Ranking, statement: str) -> Ranking:
     return replace(ranking, skipped=(*ranking.skipped, statement))
 
 
-def decide(question: Question, selection: Selection) -> Decision:
+def decide_causes(question: Question, selection: Selection) -> Decision:
     """Decide which selected effects are stated as causes, with the probability that each is true.
 
     Args:
@@ -386,7 +406,9 @@ def decide(question: Question, selection: Selection) -> Decision:
     return judge_names(problem, ranking, question.held_out, len(question.candidates))
 
 
-def describe(question: Question, decision: Decision, report: Report = ignore_progress) -> Ranking:
+def describe_unexplained_force(
+    question: Question, decision: Decision, report: Report = ignore_progress
+) -> Ranking:
     """Describe a force that no candidate effect explains by a formula, with symbolic regression.
 
     Identified effects that the formula replaces are removed.
@@ -400,7 +422,7 @@ def describe(question: Question, decision: Decision, report: Report = ignore_pro
         The ranking with the formula; the same ranking if no force remains unexplained.
     """
     problem, ranking = decision.problem, decision.ranking
-    if not ranking.unknown:
+    if not ranking.has_unexplained_force_or_cause:
         return ranking
     best, recalibrated = ranking.best, ranking.recalibrated
     found = describe_residual(problem, best, recalibrated, question.held_out, report)
@@ -453,7 +475,7 @@ def adopt_refitted_coefficients(
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
 
 
-def validate(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
+def validate_on_held_out(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
     """Compare the nominal, the recalibrated and the patched vessel model over held-out recordings.
 
     The result contains free runs (simulations with the recorded commands alone), their errors and
@@ -464,10 +486,10 @@ def validate(question: Question, decision: Decision, ranking: Ranking) -> Evalua
         decision: The problem with its correlation time.
         ranking: Selected and described effects.
     """
-    return evaluate(decision.problem, ranking, question.held_out)
+    return compare_models(decision.problem, ranking, question.held_out)
 
 
-def plan(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
+def plan_next_experiment(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
     """Return the manoeuvre that would best decide what the diagnosis leaves open.
 
     None is returned if no manoeuvre would add enough evidence.

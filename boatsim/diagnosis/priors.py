@@ -61,7 +61,7 @@ def assumed_correlation_time(vessel: Vessel, config: LoadConfig = DEFAULT.load) 
     return config.correlation_time * froude_time_scale(vessel)
 
 
-def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
+def default_free_run_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     """Return the usual duration [s] of a free run of a vessel, to three digits.
 
     A free run is a simulation from a recorded state with the recorded commands alone.
@@ -73,7 +73,7 @@ def default_horizon(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> float:
     return vessel.diagnosis.horizon or float(f"{config.horizon * froude_time_scale(vessel):.3g}")
 
 
-def used_sample_rate(
+def downsampling_rate(
     vessel: Vessel, duration: float = 0.0, config: LoadConfig = DEFAULT.load
 ) -> float:
     """Return the rate [Hz] to which recordings are downsampled before a diagnosis.

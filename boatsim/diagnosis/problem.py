@@ -66,7 +66,7 @@ class FreeParameter:
     weights: tuple[float, ...] = (1.0,)  # of a shift, one for each place
     group: str = ""  # of recordings, in which alone it acts; "": in all
 
-    def apply(self, values: Array, x: float) -> None:
+    def write_value(self, values: Array, x: float) -> None:
         """Write a value of the free parameter into the array of a vessel model's parameter values.
 
         Args:
@@ -183,13 +183,13 @@ class FilterPasses:
         return np.concatenate([one.whitened for one in self.passes])
 
     @property
-    def log_density(self) -> float:
+    def log_density_at_predictions(self) -> float:
         """Log density of measurements that would be equal to the filter's predictions.
 
         The sum over all recordings depends on the predicted covariances only, and is known up to a
         constant.
         """
-        return sum(one.log_density for one in self.passes)
+        return sum(one.log_density_at_predictions for one in self.passes)
 
 
 def froude_scale(unit: str, vessel: Vessel) -> float:
@@ -209,7 +209,9 @@ def froude_scale(unit: str, vessel: Vessel) -> float:
     return float(mass ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
 
 
-def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str) -> None:
+def check_uncertain_coefficients(
+    vessel: Vessel, specified: Mapping[str, float], where: str
+) -> None:
     """Check that a vessel has coefficients of every kind for which an uncertainty is specified.
 
     An example of a kind is "damping"; the uncertainty is that of the prior.
@@ -280,7 +282,7 @@ class Problem:
 
     def __post_init__(self) -> None:
         program = self.recordings[0].program
-        usual = priors.default_horizon(program.vessel, self.config.load)
+        usual = priors.default_free_run_horizon(program.vessel, self.config.load)
         object.__setattr__(self, "program", program)
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
@@ -310,7 +312,7 @@ class Problem:
         return tuple(sorted(found.values()))
 
     @property
-    def filtered(self) -> WorkCount:
+    def work_count(self) -> WorkCount:
         """Count of the integration steps and matrix operations of the diagnosis so far."""
         return self.recordings[0].filtered
 
@@ -330,7 +332,7 @@ class Problem:
                 found[name] = replace(effect, name=name)
         return found
 
-    def names_in_groups(self, names: Sequence[str]) -> tuple[str, ...]:
+    def candidates_in_single_groups(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the candidates that act in one group of recordings alone.
 
         Args:
@@ -343,7 +345,7 @@ class Problem:
                     found.append(name_in_group(name, group))
         return tuple(found)
 
-    def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
+    def free_parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
         """Return the free parameters of the vessel model with some candidate effects.
 
         The uncertain coefficients of the vessel come first, then the parameters of the effects, in
@@ -398,11 +400,11 @@ class Problem:
         own = []  # they act on what is common to all groups
         for parameter, x in zip(free, theta, strict=True):
             if not parameter.group:
-                parameter.apply(values, float(x))
+                parameter.write_value(values, float(x))
             elif parameter.group in mapped.groups:
                 own.append((parameter, float(x)))
         for parameter, x in own:
-            parameter.apply(values, x)
+            parameter.write_value(values, x)
         for to, source in self.links:
             values[to] = values[source]
         return values
@@ -591,9 +593,9 @@ class Problem:
         return SIDES[parameter] in {vessel.side(name) for name in vessel.target_actuators(effect)}
 
     @property
-    def stiff(self) -> bool:
+    def is_stiff(self) -> bool:
         """Whether the fastest motion of the hull decays within one sample of any recording."""
-        return any(mapped.stiff for mapped in self.recordings)
+        return any(mapped.is_stiff for mapped in self.recordings)
 
     def nominal_hypothesis(self) -> Fit:
         """Return the hypothesis that the vessel is as specified, with nothing added or fitted."""

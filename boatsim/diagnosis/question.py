@@ -8,9 +8,9 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import (
-    Library,
+    CandidateLibrary,
+    candidate_library,
     candidate_names_except,
-    library_for,
     with_specified_position_drift,
     without_excluded_effects,
 )
@@ -24,10 +24,10 @@ from boatsim.diagnosis.filter import (
     relative_noise,
     shared_noise,
 )
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import nominal_forces
-from boatsim.diagnosis.near_track import track_facts
-from boatsim.diagnosis.problem import Problem, check_uncertainty
+from boatsim.diagnosis.near_track import small_track_fact
+from boatsim.diagnosis.problem import Problem, check_uncertain_coefficients
 from boatsim.diagnosis.work import WorkCount
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -66,12 +66,12 @@ class Question:
     problem: Problem
     held_out: tuple[MappedRecording, ...]
     map_recording: Callable[[Recording], MappedRecording]
-    library: Library
+    library: CandidateLibrary
     candidates: tuple[str, ...]  # names of the effects that are tested
 
 
 def set_up_estimation_problem(
-    loaded: Loaded, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
+    loaded: LoadedRecordings, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
 ) -> Question:
     """Set up the estimation problem of a diagnosis from recordings that have been read.
 
@@ -90,12 +90,12 @@ def set_up_estimation_problem(
     uncertainty = _uncertainty(loaded, vessel, config)
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
-    track = track_facts([*loaded.fitted, *loaded.held_out], vessel, config.load)
-    libraries, programs = dict[Path | None, Library](), dict[Path | None, Program]()
+    track = small_track_fact([*loaded.fitted, *loaded.held_out], vessel, config.load)
+    libraries, programs = dict[Path | None, CandidateLibrary](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
-        libraries[path] = library_for(known, loaded.library, {**facts, **track}, columns)
-        candidates = libraries[path].compiled if with_candidates else ()
+        libraries[path] = candidate_library(known, loaded.library, {**facts, **track}, columns)
+        candidates = libraries[path].compiled_effects if with_candidates else ()
         programs[path] = Program(known, candidates)
     levels = prior_noise_levels(vessel, loaded.fitted, config)
     noise = shared_noise(vessel, loaded.fitted, config)
@@ -108,19 +108,21 @@ def set_up_estimation_problem(
     problem = Problem(fitted, levels, uncertainty, loaded.horizon, config)
     library = libraries[first.path]
     names = candidate_names_except(library, loaded.without)
-    names = (*names, *problem.names_in_groups(names))
+    names = (*names, *problem.candidates_in_single_groups(names))
     return Question(problem, tuple(held_out), mapper, library, names)
 
 
-def _uncertainty(loaded: Loaded, vessel: Vessel, config: DiagnosisConfig) -> dict[str, float]:
+def _uncertainty(
+    loaded: LoadedRecordings, vessel: Vessel, config: DiagnosisConfig
+) -> dict[str, float]:
     """Relative prior sd of coefficients by kind. Raises BadInput."""
     uncertainty = priors.coefficient_uncertainty(vessel, config.load)
     where = f"{vessel.file.parent.name}/{vessel.file.name}: diagnosis"
-    check_uncertainty(vessel, uncertainty, where)
+    check_uncertain_coefficients(vessel, uncertainty, where)
     for recording in (*loaded.fitted, *loaded.held_out):
         specified = recording.notes.coefficient_uncertainty
         where = f"{recording.path or recording.name} by its recording.toml"
-        check_uncertainty(loaded.vessels[recording.path], specified, where)
+        check_uncertain_coefficients(loaded.vessels[recording.path], specified, where)
     return uncertainty | loaded.fitted[0].notes.coefficient_uncertainty
 
 

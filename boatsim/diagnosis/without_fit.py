@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from boatsim.diagnosis.divergence import (
-    divergences,
+    find_divergences,
     first_rows_are_finite,
     raise_latent_force_level,
 )
@@ -51,7 +51,7 @@ def results_without_fit(
                 "missing force can not be estimated, not even with a larger disturbance; record "
                 "at a higher rate"
             )
-        places = divergences(problem, everything, forces)
+        places = find_divergences(problem, everything, forces)
         horizon = free_run_horizon(problem, held_out)
         runs = _finite_runs(problem, fit, held_out, horizon)
         before = problem.on(everything).log_likelihood(

@@ -27,7 +27,7 @@ def background_listener(listen: Listener, interval: float) -> Iterator[Listener]
     finished = threading.Event()
     errors: list[BaseException] = []
 
-    def run() -> None:
+    def pass_rows_at_intervals() -> None:
         try:
             while not finished.wait(interval):
                 _pass_waiting_rows(rows, listen)
@@ -35,15 +35,15 @@ def background_listener(listen: Listener, interval: float) -> Iterator[Listener]
         except BaseException as error:
             errors.append(error)
 
-    def put(more: Recording) -> None:
+    def queue_rows(more: Recording) -> None:
         if errors:
             raise errors.pop()
         rows.put(more)
 
-    thread = threading.Thread(target=run, name="files")
+    thread = threading.Thread(target=pass_rows_at_intervals, name="files")
     thread.start()
     try:
-        yield put
+        yield queue_rows
     finally:
         finished.set()
         thread.join()

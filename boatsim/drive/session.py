@@ -8,7 +8,7 @@ from pathlib import Path
 from boatsim.drive.background_tasks import background_listener
 from boatsim.drive.clock import Clock
 from boatsim.drive.server import Server
-from boatsim.drive.task import FILE, Task
+from boatsim.drive.task import FILE, DriveTask
 from boatsim.drive.telemetry import PageData
 from boatsim.errors import BoatsimError
 from boatsim.recordings.table import Recording
@@ -45,7 +45,7 @@ class Session:
     """
 
     def __init__(
-        self, task: Task, server: Server, notify: Callable[[str], None], watched: bool = False
+        self, task: DriveTask, server: Server, notify: Callable[[str], None], watched: bool = False
     ) -> None:
         """Create a session.
 
@@ -131,8 +131,8 @@ class Session:
         """
         with background_listener(listen, self._interval) as files:
 
-            def show(rows: Recording) -> None:
-                self._tally.add(rows)
+            def show_rows_on_page(rows: Recording) -> None:
+                self._tally.add_rows(rows)
                 self._heading = float(rows["psi_rad"][-1])
                 self._end = float(rows.t[-1])
                 metrics = self._tally.metrics()
@@ -142,7 +142,7 @@ class Session:
                 self.server.send_frame(frame)
                 files(rows)
 
-            yield show
+            yield show_rows_on_page
 
     def recording_facts(self) -> Mapping[str, object]:
         """Return facts about the driven run for recording.toml, such as delays and late periods."""
@@ -204,7 +204,7 @@ def _scene_of(scenario: Scenario) -> Scene:
     return scene_from_model(world.build_model(vessel, tank, file.step), vessel, tank)
 
 
-def folder_name(vessel: str, now: float) -> Path:
+def output_folder_name(vessel: str, now: float) -> Path:
     """Return the output folder of a driven run, named after the local time to be unique.
 
     Args:

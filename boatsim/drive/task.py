@@ -35,7 +35,7 @@ TASK_KEYS = (
 Goals = Sequence[tuple[float, Mapping[str, float] | None]]
 
 
-class Task:
+class DriveTask:
     """Scenario of a run that a driver steers, with its vessel and the mapping of the sticks.
 
     Attributes:
@@ -84,7 +84,7 @@ class Task:
             address="",
         )
 
-    def scenario_in_folder(self, folder: Path) -> Scenario:
+    def scenario_with_address(self, folder: Path) -> Scenario:
         """Return the driven scenario with the address of its file in an output folder.
 
         Args:

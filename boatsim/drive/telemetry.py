@@ -49,7 +49,7 @@ class PageData:
             "about": file.about,
             "length": scene.length,
             "reach": scene.reach,
-            "outline": [[round(float(x), 4), round(-float(y), 4)] for x, y in scene.outline()],
+            "outline": [[round(float(x), 4), round(-float(y), 4)] for x, y in scene.hull_outline()],
             "tank": None if scene.open else list(scene.tank),
             "start": [file.start.x, file.start.y, file.start.psi],
             "thrusters": [{"name": t.name, "x": t.x, "y": t.y} for t in scene.thrusters],

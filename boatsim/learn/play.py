@@ -126,7 +126,7 @@ class TaskSimulation:
         task = self.task
         size = self.variation.random_number_count
         uniforms = episode_random.uniform_numbers(seeds, size + type(task).random_numbers)
-        which = self.variation.assign_samples(self.world, uniforms[:, :size], boats)
+        which = self.variation.sample_and_assign(self.world, uniforms[:, :size], boats)
         starts, goals = task.sample_episodes(uniforms[:, size:], self.scale)
         states = np.zeros((len(boats), 2 * len(self.vessel.dof)))
         states[:, self._columns] = starts

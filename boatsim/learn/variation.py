@@ -51,7 +51,7 @@ class Variation:
             count += len(self.spread.sd)
         return count
 
-    def assign_samples(self, world: World, uniforms: Array, boats: Boats) -> Array:
+    def sample_and_assign(self, world: World, uniforms: Array, boats: Boats) -> Array:
         """Sample vessels and effect parameters for new episodes and assign them to boats.
 
         Args:

@@ -25,11 +25,11 @@ class Levels(MetricSet):
     every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="length of an interval")
 
     def unit(self, metric: str) -> str:
-        """Return the unit of the sampled signal, which all metrics of this set have."""
+        """Return the unit of the metrics, which is that of the sampled signal."""
         return unit_of(self.signal)
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Explain in words that a run ended early: its end and its number of complete intervals."""
+        """Explain in words that a run ended before an interval did, with its complete intervals."""
         complete = int((log.t[-1] + 1e-6) / self.every)
         return f"the run ends at {log.t[-1]:.4g} s, after {complete} intervals"
 

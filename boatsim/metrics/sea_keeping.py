@@ -28,10 +28,14 @@ class SeaKeeping(MetricSet):
         """Return the rms of yaw, roll and rudder angle over a run, as far as the log has them."""
         rows_between(log)
         named = {"yaw_rms": self.heading, "roll_rms": self.roll, "rudder_rms": self.rudder}
-        return {norm: rms(log, signal) for norm, signal in named.items() if signal in log.signals}
+        return {
+            norm: rms_angle_deg(log, signal)
+            for norm, signal in named.items()
+            if signal in log.signals
+        }
 
 
-def rms(log: Recording, signal: str) -> float:
+def rms_angle_deg(log: Recording, signal: str) -> float:
     """Return the root mean square of an angle over all rows of a log [deg].
 
     Args:

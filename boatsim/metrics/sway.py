@@ -47,7 +47,7 @@ class Sway(CameraMetricSet):
     )
 
     def explain_missing_value(self, metric: str, log: Recording) -> str:
-        """Explain in words that a boat moved too little to starboard, with the distance reached."""
+        """Explain in words that a boat never moved the required distance to starboard."""
         psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
         aside = np.cos(psi) * dy - np.sin(psi) * dx
         return f"{describe_closest_value(aside, self.distance, 'm')} to starboard"
@@ -66,7 +66,7 @@ class Sway(CameraMetricSet):
         )
         if frame is None:
             return {}
-        part = frames.until(frame)
+        part = frames.up_to_frame(frame)
         found = self.yaw_rate_metrics(np.unwrap(part.heading), part.t[1] - part.t[0])
         return {name: float(value) for name, value in found.items()} | {
             "surge_offset": float(part.place[-1, 0] - part.place[0, 0]),  # x_i - x_0

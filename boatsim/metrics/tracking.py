@@ -48,13 +48,13 @@ class Tracking(MetricSet):
         rows = rows_between(log, self.since, self.until or inf)
         scale = degrees(1.0) if unit_of(self.signal).startswith("rad") else 1.0
 
-        def error(name: str) -> Array:
+        def error_from_reference(name: str) -> Array:
             return np.asarray(scale * (log[self.signal] - (log[name] if name else 0.0))[rows])
 
-        off = error(self.reference)
+        off = error_from_reference(self.reference)
         found = {"rms": float(np.sqrt(np.mean(off**2))), "max": float(np.abs(off).max())}
         if self.goal:
-            off = error(self.goal)
+            off = error_from_reference(self.goal)
             late = log.t[rows] > log.t[rows][-1] - 1.0
             found |= {
                 "rms_goal": float(np.sqrt(np.mean(off**2))),

@@ -74,7 +74,7 @@ class Yaw(CameraMetricSet):
         frame = first_frame_where(np.abs(frames.psi - frames.psi[0]) >= 2.0 * pi)
         if frame is None:
             return {}
-        part = frames.until(frame)
+        part = frames.up_to_frame(frame)
         turn = np.sign(part.psi[-1] - part.psi[0])
         away = np.hypot(*(part.place - part.place[0]).T)
         found = self.deviation_metrics(part.marks[self.mark], float(turn))

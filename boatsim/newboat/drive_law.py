@@ -29,7 +29,7 @@ class DriveLaw:
         return self.rpm * UNITS["rpm"]
 
     @property
-    def neutral(self) -> float:
+    def neutral_command(self) -> float:
         """Raw command without thrust, the middle of a dead zone of the curve."""
         commands, thrusts = np.transpose(self.curve)
         below = commands[thrusts <= 0.0]
@@ -38,7 +38,7 @@ class DriveLaw:
             return float(0.5 * (above[0] + below[-1]))
         return float(np.interp(0.0, thrusts, commands))
 
-    def channel(self, name: str) -> str:
+    def channel_name(self, name: str) -> str:
         """Return the name of the command channel of a thruster."""
         if self.rpm is not None:
             return f"n_{name}_radps"
@@ -46,7 +46,7 @@ class DriveLaw:
             return f"throttle_{name}"
         return f"thrust_{name}_N"
 
-    def command(self, thrust: float, ahead: float, astern: float) -> float:
+    def command_for_thrust(self, thrust: float, ahead: float, astern: float) -> float:
         """Return the command that gives a thrust at rest.
 
         Args:
@@ -67,7 +67,7 @@ class DriveLaw:
 
     def _command_of_curve(self, thrust: float) -> float:
         if thrust == 0.0:
-            return self.neutral
+            return self.neutral_command
         commands, thrusts = np.transpose(self.curve)
         used = thrusts > 0.0
         if thrust < 0.0:

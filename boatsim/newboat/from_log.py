@@ -23,7 +23,7 @@ from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuat
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import open_parts
+from boatsim.diagnosis.loading import open_recording_parts
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -101,7 +101,7 @@ def fit_boat(
     opened: list[Recording] = []
     fitted = 0  # number of parts of the logs
     for path in (*logs, *held_out):
-        parts, boat = open_parts(path, str(vessel_file), ())
+        parts, boat = open_recording_parts(path, str(vessel_file), ())
         opened += parts
         if path in logs:
             fitted = len(opened)
@@ -189,7 +189,7 @@ def _add_candidates(problem: Problem, best: Fit, report: Report) -> Fit:
 def _initial_fit(problem: Problem, best: Fit, name: str) -> Fit:
     """The initial values of a fit with one more effect."""
     effects = (*best.effects, name)
-    free = problem.parameters(effects)
+    free = problem.free_parameters(effects)
     return unfitted_hypothesis(
         effects, free, free_parameter_values(free, best.values()), best.levels
     )

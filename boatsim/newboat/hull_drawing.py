@@ -25,7 +25,7 @@ def _fitting_lines(boat: Particulars) -> Iterator[str]:
     for name, mount in boat.named_thrusters():
         yield from _outboard_lines(boat, name, mount)
     if boat.rudder is not None:
-        at = (boat.centre_from_transom + boat.rudder.x, 0, -0.5 * hull.draught)
+        at = (boat.mass_centre_from_transom + boat.rudder.x, 0, -0.5 * hull.draught)
         size = (0.02 * hull.length, 0.003 * hull.length, 0.5 * hull.draught)
         yield geom_element("rudder", "box", at, size, "seen", "dark")
 
@@ -34,7 +34,7 @@ def _outboard_lines(boat: Particulars, name: str, mount: Mount) -> Iterator[str]
     """Leg and propeller of a thruster, with a cowl where it turns."""
     hull = boat.hull
     high = plain_hull.deck_height(hull)
-    x, y = boat.centre_from_transom + mount.x, -mount.y
+    x, y = boat.mass_centre_from_transom + mount.x, -mount.y
     leg, radius = 0.5 * (high + hull.draught), 0.02 * hull.length
     size = (0.6 * radius, 0.3 * radius, leg)
     yield geom_element(f"leg_{name}", "box", (x, y, high - leg), size, "seen", "dark")

@@ -115,16 +115,16 @@ class Particulars:
     breadth_given: bool = False
 
     @property
-    def centre_from_transom(self) -> float:
+    def mass_centre_from_transom(self) -> float:
         """Mass centre ahead of the transom [m]; at mid-length where nobody stated it."""
         if self.mass_centre is None:
             return 0.5 * self.hull.length
         return self.mass_centre
 
     @property
-    def middle(self) -> float:
+    def midship_position(self) -> float:
         """Middle of the length ahead of the mass centre [m]."""
-        return 0.5 * self.hull.length - self.centre_from_transom
+        return 0.5 * self.hull.length - self.mass_centre_from_transom
 
     def named_tunnels(self) -> list[tuple[str, Mount]]:
         """Return the tunnel thrusters with names by place, numbered if several have one name."""

@@ -51,23 +51,23 @@ def _stage_commands(boat: Particulars) -> list[dict[str, float]]:
     part = approach_thrust_share(boat)
     limit = boat.helm.most
 
-    def at(share: float, helm: float) -> dict[str, float]:
+    def commands_at(share: float, helm: float) -> dict[str, float]:
         found: dict[str, float] = {}
         for (name, mount), most in pairs:
             least = mount.largest_astern(most)
             force = share * most + helm * by_thrust.get(name, 0.0)
             force = min(max(force, -least), most)
-            found[boat.law.channel(name)] = boat.law.command(force, most, least)
+            found[boat.law.channel_name(name)] = boat.law.command_for_thrust(force, most, least)
         for channel, gain in angles.items():
             found[channel] = min(max(helm * gain, -limit), limit)
         return found
 
     slow, fast = 0.6 * part, 1.6 * part
     return [
-        at(part, 0.0),
-        at(part, HELM),
-        at(part, -HELM),
-        at(fast, 0.0),
-        at(slow, -MAX_ANGLE),
-        at(-part, 0.0),
+        commands_at(part, 0.0),
+        commands_at(part, HELM),
+        commands_at(part, -HELM),
+        commands_at(fast, 0.0),
+        commands_at(slow, -MAX_ANGLE),
+        commands_at(-part, 0.0),
     ]

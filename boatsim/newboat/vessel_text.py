@@ -107,7 +107,7 @@ def _thrust_channel(name: str) -> str:
     return f"thrust_{name}_N"
 
 
-def steer_channel(name: str) -> str:
+def steering_channel_name(name: str) -> str:
     """Return the name of the command channel for the angle of a thruster that turns.
 
     Args:
@@ -150,7 +150,7 @@ def _body_lines(boat: Particulars) -> Iterator[str]:
     place = "for the drawing: mass centre at mid-length"
     if boat.mass_centre is not None:
         place = OWNER
-    yield toml_line("cg_from_transom", boat.centre_from_transom, "m", place)
+    yield toml_line("cg_from_transom", boat.mass_centre_from_transom, "m", place)
     yield toml_line(
         "cg_above_keel", hull.draught, "m", "for the drawing: mass centre in the waterline"
     )
@@ -168,7 +168,7 @@ def _channel_lines(boat: Particulars) -> Iterator[str]:
         if mount.turns:
             about = "positive pushes to starboard"
             yield (
-                f"{steer_channel(name)} = {{ low = -{angle}, high = {angle}, about = "
+                f"{steering_channel_name(name)} = {{ low = -{angle}, high = {angle}, about = "
                 f'"{about}" }}  # {unit}'
             )
     for name, mount in boat.named_tunnels():
@@ -195,9 +195,9 @@ def _command_lines(boat: Particulars, name: str, mount: Mount, most: float) -> I
         low, high = boat.law.curve[0][0], boat.law.curve[-1][0]
         neutral = ""
         if not low <= 0.0 <= high:
-            neutral = f", neutral = {format_number(boat.law.neutral)}"
+            neutral = f", neutral = {format_number(boat.law.neutral_command)}"
         yield (
-            f"{boat.law.channel(name)} = {{ low = {format_number(low)}, high = "
+            f"{boat.law.channel_name(name)} = {{ low = {format_number(low)}, high = "
             f'{format_number(high)}{neutral}, about = "raw command of the thrust curve" }}'
             f"  # {OWNER}"
         )
@@ -210,7 +210,7 @@ def _command_lines(boat: Particulars, name: str, mount: Mount, most: float) -> I
     if least != 0.0:
         slowest = _negative(rate)
     limits = f'low = {slowest}, high = {format_number(rate)}, about = "shaft rate, ahead positive"'
-    yield f"{boat.law.channel(name)} = {{ {limits} }}  # [rad/s] {boat.law.rpm:g} rpm, {OWNER}"
+    yield f"{boat.law.channel_name(name)} = {{ {limits} }}  # [rad/s] {boat.law.rpm:g} rpm, {OWNER}"
 
 
 def _negative(value: float) -> str:
@@ -239,8 +239,8 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
     yield _estimate_line("yaw", _in_depth(boat, added_mass.yaw_added_mass(hull)), "kg m^2")
     middle = "mid-length ahead of the mass centre"
     if boat.mass_centre is not None:
-        yield toml_line("sway_at", boat.middle, "m", middle)
-    linear, quadratic = resistance.surge_damping(hull, stated_full_thrust(boat), boat.speed)
+        yield toml_line("sway_at", boat.midship_position, "m", middle)
+    linear, quadratic = resistance.surge_damping(hull, specified_full_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _estimate_line("surge", linear, "N s/m")
     yield _estimate_line("sway", sway, "N s/m")
@@ -255,12 +255,12 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
     section = _in_depth(boat, sway_yaw_damping.section_drag_coefficient())
     yield _estimate_line("section_drag_coefficient", section, "")
     if boat.mass_centre is not None:
-        yield toml_line("centre", boat.middle, "m", middle)
+        yield toml_line("centre", boat.midship_position, "m", middle)
     yield toml_line("density", DENSITY, "kg/m^3", "fresh water")
     lift = sway_yaw_damping.lift_derivatives(hull)
     yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
     yield _estimate_line("sway", lift.sway, "N s^2/m^2")
-    yield _estimate_line("at", Estimate(lift.at.value + boat.middle, lift.at.rule), "m")
+    yield _estimate_line("at", Estimate(lift.at.value + boat.midship_position, lift.at.rule), "m")
     yield _estimate_line("yaw", lift.yaw, "N s^2")
     if boat.helm.rate is not None:
         yield from ("", "[[effect]]", 'use = "steering_rate_limit"')
@@ -306,7 +306,7 @@ def rudder_design_speed(boat: Particulars) -> float:
     return min(easy, boat.speed)
 
 
-def stated_full_thrust(boat: Particulars) -> float | None:
+def specified_full_thrust(boat: Particulars) -> float | None:
     """Return the total full thrust of a new boat [N]; None if its owner did not give all thrusts.
 
     Args:
@@ -322,7 +322,7 @@ def _thruster_lines(name: str, mount: Mount) -> Iterator[str]:
     yield from ("", "[[effect]]", 'use = "thruster"', f"name = {toml_value(name)}")
     steer = ""
     if mount.turns:
-        steer = f', angle = "{steer_channel(name)}"'
+        steer = f', angle = "{steering_channel_name(name)}"'
     yield f'on = {{ thrust = "{_thrust_channel(name)}"{steer} }}'
     yield from _mount_lines(mount)
 
@@ -337,8 +337,8 @@ def _propeller_lines(boat: Particulars, name: str, mount: Mount, most: float) ->
     yield from ("", "[[effect]]", 'use = "propeller"', f"name = {toml_value(name)}")
     steer = ""
     if mount.turns:
-        steer = f', angle = "{steer_channel(name)}"'
-    yield f'on = {{ shaft = "{boat.law.channel(name)}"{steer} }}'
+        steer = f', angle = "{steering_channel_name(name)}"'
+    yield f'on = {{ shaft = "{boat.law.channel_name(name)}"{steer} }}'
     rule = _thrust_rule(boat, mount)
     for key, force in (("ahead", most), ("astern", mount.largest_astern(most))):
         at_full = f"{format_number(force)} N at {boat.law.rpm:g} rpm: {rule}"
@@ -359,7 +359,7 @@ def _curve_lines(boat: Particulars) -> Iterator[str]:
     for name, _ in boat.named_thrusters():
         yield from ("", "[[effect]]", 'use = "thrust_curve"', f'name = "curve_{name}"')
         yield f'on = "{_thrust_channel(name)}"'
-        yield f'fed_by = "{boat.law.channel(name)}"'
+        yield f'fed_by = "{boat.law.channel_name(name)}"'
         yield f"points = [{points}]  # raw command, thrust [N]: {OWNER}"
 
 
@@ -432,11 +432,11 @@ def _manoeuvring_lines(boat: Particulars) -> Iterator[str]:
     ahead: list[str] = []
     astern: list[str] = []
     for (name, mount), most in zip(named, full, strict=True):
-        channel, least = boat.law.channel(name), mount.largest_astern(most)
-        forward = boat.law.command(part * most, most, least)
+        channel, least = boat.law.channel_name(name), mount.largest_astern(most)
+        forward = boat.law.command_for_thrust(part * most, most, least)
         ahead.append(f"{channel} = {format_number(forward)}")
         if least > 0.0 or mount.astern is None:
-            backward = boat.law.command(-part * least, most, least)
+            backward = boat.law.command_for_thrust(-part * least, most, least)
             astern.append(f"{channel} = {format_number(backward)}")
     rule = "half thrust"
     if part < APPROACH_PART:
@@ -467,7 +467,7 @@ def steering_angles(boat: Particulars) -> dict[str, float]:
     turning: dict[str, float] = {}
     for name, mount in boat.named_thrusters():
         if mount.turns:
-            turning[steer_channel(name)] = -1.0 if mount.x <= 0 else 1.0
+            turning[steering_channel_name(name)] = -1.0 if mount.x <= 0 else 1.0
     return turning
 
 
@@ -503,9 +503,9 @@ def steering_commands(boat: Particulars) -> dict[str, float]:
         if name in by_name:
             change = abs(by_name[name]) * MAX_ANGLE
             least = mount.largest_astern(most)
-            neutral = boat.law.command(0.0, most, least)
-            step = (boat.law.command(change, most, least) - neutral) / MAX_ANGLE
-            gains[boat.law.channel(name)] = math.copysign(step, by_name[name])
+            neutral = boat.law.command_for_thrust(0.0, most, least)
+            step = (boat.law.command_for_thrust(change, most, least) - neutral) / MAX_ANGLE
+            gains[boat.law.channel_name(name)] = math.copysign(step, by_name[name])
     return gains
 
 

@@ -83,7 +83,7 @@ __all__ = [
     "first_order_lag",
     "mass_matrix",
     "segment_mean",
-    "motion",
+    "make_motion",
     "replacement_parameter",
     "param",
     "ParameterChanges",
@@ -94,8 +94,8 @@ __all__ = [
 ]
 
 
-def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
-    """Return a `Motion` (position, attitude, velocities of the hull) for tests and plots of laws.
+def make_motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
+    """Return a `Motion` of the hull (position, attitude, velocities) from the given fields.
 
     Args:
         current: Velocity of the water, north and east [m/s]. It holds for level axes; for a hull

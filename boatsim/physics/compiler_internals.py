@@ -82,7 +82,7 @@ def register_with_numba(constructor: Callable[..., object], record: type) -> Non
     infer_global(constructor)(Constructor)
 
     @lower_builtin(constructor, types.VarArg(types.Any))
-    def build(
+    def build_named_tuple(
         context: BaseContext, builder: ir.IRBuilder, call: Signature, args: Sequence[ir.Value]
     ) -> ir.Value:
         items = []
@@ -241,10 +241,10 @@ class FunctionPointer(NativePointer):
 def pointer_from_integer(context: Any, word: Any) -> Any:
     """Return, in compiled code, the pointer to the memory address that an integer contains."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def generate_cast(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], cgutils.voidptr_t)
 
-    return types.voidptr(word), generate
+    return types.voidptr(word), generate_cast
 
 
 def compile_callback(function: Callable[..., Any]) -> Any:

@@ -93,7 +93,7 @@ class Composition:
         own = self._parameters_text(number)
         held: tuple[str, ...] = ()
         if type(effect).sees_held:
-            held = ("act", "at", f"np.int64({self.history_place(number)})")
+            held = ("act", "at", f"np.int64({self.history_index(number)})")
         if not type(effect).per_instance_of:
             signals = (self._signals_text(number),) if type(effect).roles else ()
             return [LawCall(number, own, signals + held)]
@@ -140,7 +140,7 @@ class Composition:
         """
         return self._memory_offsets[number, actuator]
 
-    def history_place(self, number: int) -> int:
+    def history_index(self, number: int) -> int:
         """Return the index in `law_signals` of the past signal value that an effect uses.
 
         It is 0 for an effect that uses none.
@@ -150,7 +150,7 @@ class Composition:
         """
         return self._own.get(number, 0)
 
-    def filtered_source(self, number: int) -> int:
+    def filtered_signal_index(self, number: int) -> int:
         """Return the place among the signals of the force laws of the one that an effect filters.
 
         Args:
@@ -173,7 +173,7 @@ class Composition:
         """
         return number >= len(self.vessel.effects) or effect.uses_history
 
-    def later_effects(self, number: int) -> Sequence[int]:
+    def indices_of_later_effects(self, number: int) -> Sequence[int]:
         """Return the indices of the effects that are evaluated after a given effect.
 
         Args:
@@ -234,7 +234,7 @@ class Composition:
             else:
                 angle = float(channel or 0.0)
                 angles += [self._signal_text(cos(angle)), self._signal_text(sin(angle))]
-        first = self.history_place(i)
+        first = self.history_index(i)
         results = [f"act[at + {first + k}]" for k in range(len(type(effect).filtered))]
         return f"S{i}({', '.join([*texts, *angles, *results])})"
 

@@ -68,7 +68,7 @@ def excluding_fact(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, obj
     return ""
 
 
-def first_invalid(facts: Mapping[str, object]) -> tuple[str, str] | None:
+def first_invalid_fact(facts: Mapping[str, object]) -> tuple[str, str] | None:
     """Return the first fact with an invalid value and a description of what is allowed, or None.
 
     Args:

@@ -51,7 +51,7 @@ class RememberingContext(Context):
 
         It is taken from a cache if all arguments are numbers, arrays or tuples of these.
         """
-        if kws or isinstance(func, types.Dispatcher) or not all(map(is_plain, args)):
+        if kws or isinstance(func, types.Dispatcher) or not all(map(is_plain_type, args)):
             return super().resolve_function_type(func, args, kws)
         key = (func, tuple(args))
         if key not in self._resolved:
@@ -62,10 +62,10 @@ class RememberingContext(Context):
         return self._resolved[key]
 
 
-def is_plain(kind: Any) -> bool:
+def is_plain_type(kind: Any) -> bool:
     """Return whether a numba type is a number, an array, or a tuple of these."""
     if isinstance(kind, types.BaseTuple):
-        return all(map(is_plain, kind))
+        return all(map(is_plain_type, kind))
     return isinstance(kind, PLAIN_TYPES)
 
 

@@ -23,7 +23,7 @@ from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import CoefficientRelease
-from boatsim.physics.native.build import NoCompiler, compiler
+from boatsim.physics.native.build import NoCompiler, compiler_path
 from boatsim.physics.native.declarations import NotTranslatable
 from boatsim.physics.native.library import native_program
 from boatsim.physics.signals import AXES, Array, MeasuredMotion
@@ -133,7 +133,7 @@ class Program:
             memory = np.zeros(self.memory_size)
         if force is None:
             force = np.zeros(code.NQ)
-        return VesselState(y, memory, np.zeros(self.held_size), force)
+        return VesselState(y, memory, np.zeros(self.actuator_signal_size), force)
 
     @cached_property
     def composition(self) -> Composition:
@@ -146,7 +146,7 @@ class Program:
         return max(self.composition.memory_size, 1)
 
     @property
-    def held_size(self) -> int:
+    def actuator_signal_size(self) -> int:
         """Number of floats that hold the actuator signals at begin, middle and end of a step."""
         return 3 * int(self.module.HELD)
 
@@ -224,7 +224,7 @@ class Program:
         return cast(CompiledProgram, package)
 
     @cached_property
-    def functions(self) -> CompiledProgram:
+    def estimation_functions(self) -> CompiledProgram:
         """The functions of the program for the analysis of recordings, from C if possible.
 
         Their numbers are the same as those of `module`, which takes longer to compile.
@@ -232,7 +232,7 @@ class Program:
         return self._from_library("estimation")
 
     @cached_property
-    def simulation(self) -> CompiledProgram:
+    def simulation_functions(self) -> CompiledProgram:
         """The functions of the program for simulations, from C if possible.
 
         Their numbers are the same as those of `module`, which takes longer to compile.
@@ -243,7 +243,7 @@ class Program:
         if DEBUG:
             return self.module
         try:
-            found: Any = native_program(cast(Any, self.module), library, compiler())
+            found: Any = native_program(cast(Any, self.module), library, compiler_path())
             return cast(CompiledProgram, found)
         except (NoCompiler, NotTranslatable):
             return self.module

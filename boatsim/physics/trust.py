@@ -1,7 +1,7 @@
 """Which Python files may run: those of boatsim and of folders that the user trusts.
 
 Data files alone never cause Python code to run. Trust holds in a `trust_folders` block, and in the
-processes that the block starts if they are given `current_trust()`.
+processes that the block starts if they are given `trusted_folder_list()`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -43,7 +43,7 @@ class TrustedFolders:
 _now: ContextVar[TrustedFolders] = ContextVar("trust")
 
 
-def current_trust() -> TrustedFolders:
+def trusted_folder_list() -> TrustedFolders:
     """Return the folders trusted in this process, for another process that cannot ask the user."""
     return replace(_now.get(TrustedFolders()), ask=None, answers={})
 
@@ -90,7 +90,7 @@ def adopt_trust(trust: TrustedFolders) -> None:
     """Trust the folders that another process trusts, until this process ends.
 
     Args:
-        trust: `current_trust()` of the other process.
+        trust: `trusted_folder_list()` of the other process.
     """
     _now.set(trust)
 

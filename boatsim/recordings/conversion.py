@@ -41,8 +41,8 @@ class Range(Table):
             raise ValueError("neutral must lie between low and high")
         return self
 
-    def of(self, values: Array) -> Array:
-        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+    def convert(self, values: Array) -> Array:
+        """Convert a signal (N,) to the column on both sides of neutral; constant beyond."""
         ends = sorted([(self.low, -1.0), (self.neutral, 0.0), (self.high, 1.0)])
         of_signal, of_share = np.array(ends).T
         share = np.interp(values, of_signal, of_share)
@@ -50,8 +50,8 @@ class Range(Table):
         return np.asarray(full * np.abs(share) ** self.exponent)
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """Smallest and largest value of the signal that is not set to a limit."""
+    def unclipped_range(self) -> tuple[float, float]:
+        """Smallest and largest value of the signal between which the column is not clipped."""
         return min(self.low, self.high), max(self.low, self.high)
 
 
@@ -75,14 +75,14 @@ class Curve(Table):
                 raise ValueError("points must be pairs [signal, column] by increasing signal")
         return self
 
-    def of(self, values: Array) -> Array:
-        """Return the values (N,) of the column of a signal (N,), constant beyond its ends."""
+    def convert(self, values: Array) -> Array:
+        """Convert a signal (N,) to the column by a table of points, constant beyond its ends."""
         of_signal, of_column = np.array(self.points).T
         return np.asarray(np.interp(values, of_signal, of_column))
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """Smallest and largest value of the signal that is not set to a limit."""
+    def unclipped_range(self) -> tuple[float, float]:
+        """Smallest and largest value of the signal between which the column is not clipped."""
         return self.points[0][0], self.points[-1][0]
 
 
@@ -119,8 +119,8 @@ class Allocation(Table):
             raise ValueError("low must be less than high")
         return self
 
-    def of(self, values: Array) -> Array:
-        """Return the values (N,) of the column of the sum (N,) of the terms."""
+    def convert(self, values: Array) -> Array:
+        """Convert the sum (N,) of the terms to the column by the limits and the power law."""
         total = np.clip(values, self.low, self.high)
         below = self.coefficient_below or self.coefficient
         k = np.where(total < 0.0, below, self.coefficient)
@@ -130,8 +130,8 @@ class Allocation(Table):
         return np.asarray(np.sign(total) * size)
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """Smallest and largest value of the sum that is not set to a limit."""
+    def unclipped_range(self) -> tuple[float, float]:
+        """Smallest and largest value of the sum between which the column is not clipped."""
         return self.low, self.high
 
 

@@ -44,7 +44,7 @@ class Expression:
     factor: float = 1.0
     offset: float = 0.0
 
-    def of(self, values: Array) -> Array:
+    def convert(self, values: Array) -> Array:
         """Apply the formula to the signal's values (N,); return the values (N,) of the column."""
         return values * self.factor + self.offset
 

@@ -13,7 +13,7 @@ from typing import TypedDict, TypeVar
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value, home_folder, read_toml
-from boatsim.physics.facts import first_invalid
+from boatsim.physics.facts import first_invalid_fact
 from boatsim.physics.groups import IN_GROUP
 from boatsim.physics.signals import AXES
 from boatsim.recordings.conversion import Curve, Range, conversion_of
@@ -350,7 +350,7 @@ class _Reader:
         return found
 
     def checked_facts(self) -> dict[str, Value]:
-        if found := first_invalid(self.content):
+        if found := first_invalid_fact(self.content):
             raise self.bad_value(*found)
         return dict(self.content)
 

@@ -17,7 +17,7 @@ def recording_file(path: str | Path) -> Path:
     return inside if inside.is_file() else path
 
 
-def is_of_run(path: Path) -> bool:
+def is_in_run_folder(path: Path) -> bool:
     """Return whether a file lies in the output folder of a run.
 
     Args:

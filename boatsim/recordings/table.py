@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.arguments import check_instance, checked_names, checked_number, number_array
+from boatsim.arguments import check_instance, checked_names, checked_number, float_array
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import replace_file
 from boatsim.physics.content import import_library_module, shipped_content_names
@@ -81,9 +81,9 @@ class Converted:
         """Name of the column from which this one follows."""
         return self.how.signal
 
-    def of(self, values: Array) -> Array:
-        """Return the values (N,) of the column."""
-        return self.conversion.of(self.how.of(values))
+    def convert(self, values: Array) -> Array:
+        """Convert the values (N,) of the recorded column to those of this column."""
+        return self.conversion.convert(self.how.convert(values))
 
 
 @dataclass(frozen=True)
@@ -135,12 +135,12 @@ class Recording:
         check_instance("notes", self.notes, Notes, "Notes")
         check_instance("signals", self.signals, Mapping, "a mapping")
         if not isinstance(self.t, np.ndarray):
-            object.__setattr__(self, "t", number_array("t", self.t))
+            object.__setattr__(self, "t", float_array("t", self.t))
         if self.t.ndim != 1:
             raise BadInput(f"t of shape {self.t.shape}; allowed are times (N,)")
         for name, values in self.signals.items():
             if not isinstance(values, np.ndarray):
-                values = number_array(f"signals[{name!r}]", values)
+                values = float_array(f"signals[{name!r}]", values)
                 object.__setattr__(self, "signals", {**self.signals, name: values})
             if values.shape != self.t.shape:
                 raise BadInput(
@@ -545,7 +545,7 @@ def _rename_columns(
             if name in raw.text:
                 text[name] = raw.text[name]
     for ours, expression in made.items():
-        kept[ours] = expression.of(raw.columns[expression.signal])
+        kept[ours] = expression.convert(raw.columns[expression.signal])
         if expression.signal in raw.text:
             text[ours] = raw.text[expression.signal]
     remarks: tuple[str, ...] = ()

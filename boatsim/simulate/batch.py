@@ -16,19 +16,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from boatsim.arguments import (
     check_instance,
+    checked_integer,
     checked_mapping,
     checked_number,
-    checked_whole,
-    number_array,
+    float_array,
+    integer_array,
     shown,
     type_error,
-    whole_array,
 )
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.commands import clip_to_channel_ranges, clipped_commands
 from boatsim.physics.kernel.records import FleetArrays, VesselNumbers
 from boatsim.physics.kinds.effect import Effect
-from boatsim.physics.native.calls import pack_record
+from boatsim.physics.native.calls import pack_named_tuple
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
@@ -67,7 +67,7 @@ def _check_command(vessel: Vessel, name: str, values: ArrayLike) -> None:
     limits = vessel.limits()
     if name not in limits:
         return
-    given = number_array(f"{vessel.name}: {name}", values)
+    given = float_array(f"{vessel.name}: {name}", values)
     low, high = limits[name]
     reach = FAR * (high - low)
     far = (given < low - reach) | (given > high + reach)
@@ -135,20 +135,20 @@ class Batch:
             BadInput: If the vessels differ in more than numbers, or a number is not valid.
         """
         self.vessels = checked_vessels(vessels)
-        self.n = len(self.vessels) if n is None else checked_whole("n", n, 1, MOST_BOATS)
+        self.n = len(self.vessels) if n is None else checked_integer("n", n, 1, MOST_BOATS)
         self.step = checked_number("step", step, SHORTEST_STEP, LONGEST_STEP, "s")
         self.threads = len(os.sched_getaffinity(0))
         if threads is not None:
-            self.threads = checked_whole("threads", threads, 1, MOST_THREADS)
+            self.threads = checked_integer("threads", threads, 1, MOST_THREADS)
         self.programs = [Program(v) for v in self.vessels]
         self.program = self.programs[0]
-        self.code = self.program.simulation
+        self.code = self.program.simulation_functions
         self._check_same_program()
         self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.effect_switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int)
         if seeds is not None:
-            self._seeds = whole_array("seeds", seeds)
+            self._seeds = integer_array("seeds", seeds)
             if self._seeds.min(initial=0) < 0:
                 raise BadInput(f"seeds = {shown(seeds)}; allowed are numbers from 0")
         if self._seeds.shape != (self.n,):
@@ -157,10 +157,10 @@ class Batch:
         self._y = np.zeros((self.n, 2 * self.code.NQ))
         self._commands = np.tile(clipped_commands(self.vessels[0], {}), (self.n, 1))
         self._memory = np.zeros((self.n, self.program.memory_size))
-        self._act = np.zeros((self.n, self.program.held_size))
+        self._act = np.zeros((self.n, self.program.actuator_signal_size))
         self._p = np.zeros((self.n, len(self.program.values())))
         self._body, self._k = np.zeros((self.n, 6)), np.zeros((self.n, self.code.K))
-        self._given = pack_record(self.code, self.fleet)
+        self._given = pack_named_tuple(self.code, self.fleet)
         self.assign(np.arange(self.n) % len(self.vessels))
         self.reset()
 
@@ -287,7 +287,7 @@ class Batch:
             BadInput: If the name is unknown or a value out of bounds.
         """
         chosen, (rows, place, about) = self._boat_numbers(boats), self._find_parameter(parameter)
-        given = self._value_per_boat(parameter, number_array(parameter, values), chosen)
+        given = self._value_per_boat(parameter, float_array(parameter, values), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
             allowed = f"{about.low:g} to {about.high:g} {about.unit}".rstrip()
@@ -315,7 +315,7 @@ class Batch:
             BadInput: If a number does not exist.
         """
         chosen = self._boat_numbers(boats)
-        numbers = self._value_per_boat("vessel", whole_array("vessel", vessel), chosen)
+        numbers = self._value_per_boat("vessel", integer_array("vessel", vessel), chosen)
         for number in np.unique(numbers):
             if not 0 <= number < len(self.vessels):
                 raise BadInput(f"vessel {number}; allowed 0 to {len(self.vessels) - 1}")
@@ -359,7 +359,7 @@ class Batch:
         p = self._values[0]
         if values is not None:
             p = np.ascontiguousarray(self._shaped("values", values, self._values[0].shape))
-        rows = number_array("commands", commands)
+        rows = float_array("commands", commands)
         width = len(self.vessels[0].inputs)
         if rows.ndim != 2 or not len(rows) or rows.shape[1] != width:
             raise BadInput(f"commands of shape {rows.shape}; allowed is (N, {width})")
@@ -395,7 +395,7 @@ class Batch:
         for name, value in checked_mapping("commands", commands).items():
             self._shaped(f"commands: {name}", value, ())
         p = self._values[0]
-        act = np.zeros(self.program.held_size)
+        act = np.zeros(self.program.actuator_signal_size)
         k = np.zeros(self.code.K)
         memory = np.zeros(self.program.memory_size)
         self.code.settle_actuators(self.program.command_array(commands), memory, p, self._on, act)
@@ -408,7 +408,7 @@ class Batch:
     @staticmethod
     def _shaped(argument: str, value: object, shape: tuple[int, ...]) -> Array:
         """An argument that is an array of numbers of a shape. Raises BadInput."""
-        given = number_array(argument, value)
+        given = float_array(argument, value)
         if given.shape != shape:
             raise BadInput(f"{argument} of shape {given.shape}; allowed is {shape}")
         return given
@@ -468,7 +468,7 @@ class Batch:
                 raise BadInput(f"boats is a mask of shape {given.shape}; allowed is ({self.n},)")
             chosen = np.flatnonzero(given)
         else:
-            chosen = np.atleast_1d(whole_array("boats", boats))
+            chosen = np.atleast_1d(integer_array("boats", boats))
         for number in (chosen.min(initial=0), chosen.max(initial=0)):
             if not 0 <= number < self.n:
                 raise BadInput(f"boat {number}; allowed 0 to {self.n - 1}")
@@ -486,7 +486,7 @@ class Batch:
 
     def _state_rows(self, states: ArrayLike, boats: Boats) -> Array:
         """One state per vessel. Raises BadInput."""
-        given = number_array("states", states)
+        given = float_array("states", states)
         if (
             given.shape not in ((self._y.shape[1],), (len(boats), self._y.shape[1]))
             or not np.isfinite(given).all()
@@ -507,7 +507,7 @@ class Batch:
                 if np.ndim(value) > 0:
                     raise BadInput(f"commands: {name} = {shown(value)}; allowed is one number")
             return clipped_commands(vessel, commands)
-        given, width = number_array("commands", commands), len(vessel.commands)
+        given, width = float_array("commands", commands), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
         if not (given.ndim and fits and given.shape[-1] in (width, len(vessel.inputs))):
             raise BadInput(

@@ -45,7 +45,7 @@ class CameraLog:
         """Time at which the next camera frame is due [s]."""
         return self._number / self._camera.rate
 
-    def add_interval(self, commands: list[float], seconds: float) -> None:
+    def record_command_duration(self, commands: list[float], seconds: float) -> None:
         """Record for how many seconds commands were in force.
 
         Their mean between two camera frames is logged.
@@ -79,7 +79,7 @@ class CameraLog:
         )
         for frame in frames:
             self._set_mean_commands()
-            self.table.add([*frame[:4], *frame.marks, *commands])
+            self.table.append_row([*frame[:4], *frame.marks, *commands])
         self._number += len(frames)
         return frames
 

@@ -35,8 +35,8 @@ class CameraFrames:
     place: Array
     psi: Array
 
-    def until(self, frame: int) -> "CameraFrames":
-        """Return the camera frames up to and including the given frame number."""
+    def up_to_frame(self, frame: int) -> "CameraFrames":
+        """Return the measured camera frames up to and including the given frame number."""
         n = frame + 1
         marks = {name: positions[:n] for name, positions in self.marks.items()}
         return CameraFrames(self.t[:n], self.heading[:n], marks, self.place[:n], self.psi[:n])

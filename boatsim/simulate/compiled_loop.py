@@ -177,14 +177,14 @@ class ProgramFunction:
         elif not DEBUG:
             self._pointer = FunctionPointer(function, call)
 
-    def call(self, *given: Any) -> Call:
-        """Return a call of the function.
+    def bind_arguments(self, *given: Any) -> Call:
+        """Bind arguments to the function; return the call as the compiled loop takes it.
 
         Args:
             *given: Its arguments, whose arrays must live as long as the call is used.
         """
         if isinstance(self._function, NativeFunction):
-            words = np.frombuffer(self._function.packed(*given), dtype=np.int64)
+            words = np.frombuffer(self._function.pack_arguments(*given), dtype=np.int64)
             return Call(self._pointer, (words.ctypes.data, 0), words)
         return Call(self._pointer, given)
 

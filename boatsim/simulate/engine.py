@@ -70,7 +70,7 @@ class Engine(Stepper):
         self.tank = tank or world.open_water(vessel)
         self._k = np.zeros(self.code.K)
         self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
-        size = len(self._values) + self.code.K + self.program.held_size + 2
+        size = len(self._values) + self.code.K + self.program.actuator_signal_size + 2
         with without_passive_callback():
             self.model = world.build_model(vessel, self.tank, step, size, **options)
             self.data = mujoco.MjData(self.model)
@@ -80,7 +80,7 @@ class Engine(Stepper):
         self._place = np.array(list(map(joints.index, coordinates)))
         # SNAME = sign * z-up, for coordinates and rates
         self._sign = np.array([float(SIGN[name]) for name in coordinates])
-        self._held = self.data.userdata[-self.program.held_size - 2 :]
+        self._held = self.data.userdata[-self.program.actuator_signal_size - 2 :]
         self.callback = self._choose_callback(callback, size)
         self.reset()
 
@@ -186,14 +186,14 @@ def python_callback(
         size: Size of the model's userdata, by which the callback recognises its model.
     """
 
-    def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    def add_passive_forces(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
             code.add_passive_forces_in_place(
                 data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M
             )
             mujoco.mj_factorM(model, data)
 
-    return passive
+    return add_passive_forces
 
 
 class installed_callback:  # noqa: N801

@@ -322,7 +322,7 @@ def _make_metric(
     if value is None or not isfinite(value):
         value = None
         lacking = NOT_REACHED if run.complete else SHORT
-    factor = table.factor(unit)
+    factor = table.unit_factor(unit)
     published, tolerance = _scale(table.published, factor), _scale(table.tolerance, factor)
     band = None
     ok = None

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from boatsim.arguments import (
     check_instance,
+    checked_integer,
     checked_number,
-    checked_whole,
+    integer_array,
     type_error,
-    whole_array,
 )
 from boatsim.control.base import Controller
 from boatsim.control.compiled import CompiledController
@@ -105,10 +105,10 @@ class Fleet:
         if vessels is None:
             vessels = scenario.vessel
         kinds = checked_vessels(vessels)
-        count = len(kinds) if n is None else checked_whole("n", n, 1, MOST_BOATS)
+        count = len(kinds) if n is None else checked_integer("n", n, 1, MOST_BOATS)
         if seeds is None:
             seeds = range(file.seed, file.seed + count)
-        self.seeds = whole_array("seeds", list(seeds) if isinstance(seeds, range) else seeds)
+        self.seeds = integer_array("seeds", list(seeds) if isinstance(seeds, range) else seeds)
         if self.seeds.shape != (count,):
             raise BadInput(f"{self.seeds.size} seeds for {count} boats; allowed is one for each")
         if scenario.has_off_goal:

@@ -58,7 +58,7 @@ class FleetControl:
         )
         return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
-    def next_noise(self, boats: Boats, periods: int) -> Array:
+    def next_sensor_noise(self, boats: Boats, periods: int) -> Array:
         """Return the next random numbers (boats, periods, 7) of the sensor noise of each vessel."""
         samples = np.zeros((len(boats), periods, NOISES))
         if not self.sensors.ideal:
@@ -114,7 +114,7 @@ class FunctionControl:
         """
         batch, numbers = self.aboard.batch, self.aboard.sensors.error_parameters
         everyone, boat = np.arange(len(batch)), batch.vessels[0]
-        noise = self.aboard.next_noise(everyone, len(goals))
+        noise = self.aboard.next_sensor_noise(everyone, len(goals))
         for i, goal in enumerate(goals):
             batch.sense(view_as_array(self._sense))
             compiled_loop.add_sensor_errors_to_boats(
@@ -157,7 +157,7 @@ class CompiledControl:
             )
         self.aboard, self.kind = aboard, kind
         n, boat = len(aboard.batch), aboard.batch.vessels[0]
-        rows = np.concatenate([c.settings() for c in controllers])
+        rows = np.concatenate([c.settings_array() for c in controllers])
         self._settings = rows[np.arange(n) % len(rows)]
         self._memory = np.zeros(n, kind.memory_type) if memory is None else memory
         self._sense = np.zeros(n, SENSE)
@@ -186,9 +186,9 @@ class CompiledControl:
     def _advance(self, boats: Boats, goals: Array, begins: bool) -> None:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
         periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
-        loop = self._make_loop(goals, aboard.next_noise(boats, count))
-        feel = self._feel.call(boats, batch.fleet, self._felt)
-        advance = self._step.call(boats, batch.fleet, batch.step, aboard.steps)
+        loop = self._make_loop(goals, aboard.next_sensor_noise(boats, count))
+        feel = self._feel.bind_arguments(boats, batch.fleet, self._felt)
+        advance = self._step.bind_arguments(boats, batch.fleet, batch.step, aboard.steps)
         self._run(self._law, feel, advance, boats, periods, batch.fleet.commands, loop)
 
     def _make_loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
@@ -221,7 +221,7 @@ class CompiledControl:
             self._run = compiled_loop.run_periods
         else:
             boats = np.arange(1)
-            feel = self._feel.call(boats, batch.fleet, self._felt)
-            advance = self._step.call(boats, batch.fleet, batch.step, 1)
+            feel = self._feel.bind_arguments(boats, batch.fleet, self._felt)
+            advance = self._step.bind_arguments(boats, batch.fleet, batch.step, 1)
             kinds = self._law.kind, numba.typeof(feel), numba.typeof(advance)
             self._run = compiled_loop.compile_loop(kinds, numba.typeof(loop))

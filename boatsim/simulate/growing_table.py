@@ -28,7 +28,7 @@ class GrowingTable:
         self.count = 0
         self._columns = np.empty((len(names), expected))
 
-    def add(self, row: list[float]) -> None:
+    def append_row(self, row: list[float]) -> None:
         """Append a row with one value per column to the table."""
         if self.count == self._columns.shape[1]:
             self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
@@ -73,7 +73,7 @@ class FileTable(GrowingTable):
         self._pieces = AppendedFile(self._file, folder)
         self._written = 0  # [rows] in the file
 
-    def add(self, row: list[float]) -> None:
+    def append_row(self, row: list[float]) -> None:
         """Append a row with one value per column to the table in the file.
 
         Raises:
@@ -96,14 +96,14 @@ class FileTable(GrowingTable):
         if start >= self._written:
             return self._columns[:, start - self._written : end - self._written].copy()
         waiting = self._columns[:, : self.count - self._written].T
-        self._pieces.add(np.ascontiguousarray(waiting).tobytes())
+        self._pieces.append(np.ascontiguousarray(waiting).tobytes())
         # the next piece overwrites these rows, because the last one may still change
-        self._pieces.discard_end(waiting.nbytes)
+        self._pieces.truncate_end(waiting.nbytes)
         found = np.memmap(self._file, np.float64, "r", 8 * width * start, (end - start, width))
         return np.asarray(found).T
 
     def _write_piece(self) -> None:
-        self._pieces.add(np.ascontiguousarray(self._columns.T).tobytes())
+        self._pieces.append(np.ascontiguousarray(self._columns.T).tobytes())
         self._written += PIECE
 
 

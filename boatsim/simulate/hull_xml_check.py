@@ -108,7 +108,7 @@ def check_hull_file(path: Path) -> None:
 
 
 def check_hull_text(text: str, path: Path) -> None:
-    """Check a hull drawing that is no file.
+    """Check the text of a hull drawing in MuJoCo's XML format that comes from no file.
 
     Args:
         text: Drawing in MuJoCo's XML format.

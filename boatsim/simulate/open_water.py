@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from boatsim.control.compiled import ONE, SENSE_FIELDS
-from boatsim.physics.native.calls import prepare_call
+from boatsim.physics.native.calls import partial_call
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
@@ -66,13 +66,13 @@ class OpenWater(Stepper):
     def _step_in_place(self) -> Callable[[float, float], None]:
         """`step_in_place` of this vessel, a function of time and length of the step."""
         rest = self._act, self._values, self._on, self._k, self._extra
-        return prepare_call(self.code, "step_in_place", ..., self._y, ..., *rest)
+        return partial_call(self.code, "step_in_place", ..., self._y, ..., *rest)
 
     @cached_property
     def _read_instruments(self) -> Callable[[], None]:
         """`read_instruments_of_boats` of this vessel."""
         given = ONE, self.batch.fleet, self._sensed
-        return prepare_call(self.code, "read_instruments_of_boats", *given)
+        return partial_call(self.code, "read_instruments_of_boats", *given)
 
     def _step(self, dt: float) -> None:
         self._step_in_place(self.t, dt)

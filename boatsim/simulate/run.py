@@ -82,7 +82,7 @@ class Simulation:
         self._camera = CameraLog(scenario, channels, marking, self._make_table)
         goal_at = self._options.goal_source or scenario.goal_at
         self._loop = ControlLoop(
-            scenario, self.engine, goal_at, (imu, *others), self._camera.add_interval
+            scenario, self.engine, goal_at, (imu, *others), self._camera.record_command_duration
         )
         self._log = RunLog(self._loop, self._make_table)
         state = self._loop.state

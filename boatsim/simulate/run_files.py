@@ -142,16 +142,20 @@ def run_into_folder(
             so_far = None if steering else MetricsSoFar(new / METRICS)
             if "yaw" in scenario.vessel.dof:  # a camera above the water does not see a hull roll
                 camera = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv"))
-                options = replace(options, camera_listener=camera.add)
+                options = replace(options, camera_listener=camera.append_rows)
 
-            def listen(rows: Recording) -> None:
-                table.add(rows)
+            def pass_rows_to_observers(rows: Recording) -> None:
+                table.append_rows(rows)
                 for observer in started:
                     observer.add_rows(rows)
                 if so_far:
                     so_far.update(simulation.partial_result)
 
-            with steering.wrap_listener(listen) if steering else nullcontext(listen) as listener:
+            with (
+                steering.wrap_listener(pass_rows_to_observers)
+                if steering
+                else nullcontext(pass_rows_to_observers) as listener
+            ):
                 simulation = Simulation(scenario, replace(options, listener=listener), engine)
                 run = simulation.run()
             stop.finishing = True  # signals must not cost the files now
@@ -257,7 +261,7 @@ class CsvFile:
         self._file = AppendedFile(path.open("wb", buffering=0), path)
         self._has_header = False
 
-    def add(self, rows: Recording) -> None:
+    def append_rows(self, rows: Recording) -> None:
         """Append the next rows of a recording to its CSV file.
 
         Args:
@@ -267,7 +271,7 @@ class CsvFile:
             OSError: If the disk is full; then none of the rows is in the file.
         """
         header = "" if self._has_header else csv_header(rows)
-        self._file.add((header + csv_rows(rows)).encode())
+        self._file.append((header + csv_rows(rows)).encode())
         self._has_header = True
 
     def __enter__(self) -> Self:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import nan
 from operator import attrgetter
 
-from boatsim.physics.base import Force, motion
+from boatsim.physics.base import Force, make_motion
 from boatsim.physics.debugging import python_function
 from boatsim.physics.signals import AXES, COMPONENTS, motion_signals
 from boatsim.recordings.table import Notes, Recording
@@ -130,7 +130,7 @@ class RunLog:
             row += estimates[name]
         row += [estimates[name].value for name in self._references]
         row += [goal.get(name, nan) for name in self._goals]
-        self.table.add(row)
+        self.table.append_row(row)
 
     def _wind_wrench(self, state: State) -> list[float]:
         """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
@@ -142,7 +142,7 @@ class RunLog:
             for role, channel in self.scenario.vessel.specified_bindings(effect).items():
                 values[role] = self._measured[channel] if isinstance(channel, str) else channel
             signals = (type(effect).signals(**values),) if type(effect).roles else ()
-            wrench = law(motion(**state._asdict()), effect.values(), *signals)
+            wrench = law(make_motion(**state._asdict()), effect.values(), *signals)
             total = [a + b for a, b in zip(total, wrench, strict=True)]
         return total
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from boatsim.recordings.notebook.html_table import facts_table, table
+from boatsim.recordings.notebook.html_table import html_facts_table, html_table
 from boatsim.simulate.evaluation import Metric
 
 IN_BAND = {None: "", True: "yes", False: "no"}
@@ -27,4 +27,4 @@ def run_html(scenario: str, seed: int, complete: bool, metrics: Mapping[str, Met
             value = f"{metric.value:.4g} {metric.unit}".strip()
         rows.append([name, value, IN_BAND[metric.ok]])
     head = ["metric", "value", "within its regression band"]
-    return facts_table(f"Run of {scenario}", facts) + table(head, rows)
+    return html_facts_table(f"Run of {scenario}", facts) + html_table(head, rows)

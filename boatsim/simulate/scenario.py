@@ -85,7 +85,7 @@ class MetricTable(Table):
     guard: tuple[End, End] | None = None  # regression band: low, high
     unit: str | None = None  # of these values; None: that of the metric
 
-    def factor(self, unit: str) -> float:
+    def unit_factor(self, unit: str) -> float:
         """Return the factor from the stated unit of the values to the unit of the metric.
 
         Args:
@@ -447,7 +447,7 @@ def _check_metrics(file: ScenarioFile, camera: Camera, measure: MetricSet | None
         if name not in units:
             raise BadInput(unknown_name_message("[norms] key", name, units))
         try:
-            table.factor(units[name])
+            table.unit_factor(units[name])
         except BadInput as error:
             raise BadInput(f"[norms.{name}] {error}") from None
     if isinstance(measure, CameraMetricSet):

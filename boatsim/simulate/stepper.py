@@ -14,7 +14,7 @@ import numpy as np
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.commands import clip_to_channel_ranges, input_vector, saturated_channels
 from boatsim.physics.debugging import python_function
-from boatsim.physics.native.calls import prepare_call
+from boatsim.physics.native.calls import partial_call
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
@@ -61,12 +61,12 @@ class Stepper(ABC):
         """
         self.vessel, self.step = vessel, step
         self.program = Program(vessel)
-        self.code = self.program.simulation
+        self.code = self.program.simulation_functions
         self._values = self.program.values()
         self._on = self.program.effect_switches()
         self._commands = np.zeros(len(vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
-        self._act = np.zeros(self.program.held_size)
+        self._act = np.zeros(self.program.actuator_signal_size)
         self._actuators = vessel.actuators
         # mean of each actuator over the last step
         self._mean = np.zeros(len(self._actuators))
@@ -189,7 +189,7 @@ class Stepper(ABC):
     def _substep_length(self) -> Callable[[float, float], float]:
         """`substep_length` of this vessel, a function of the remainder and the lower limit."""
         arrays = self._commands, self._memory
-        return prepare_call(self.code, "substep_length", *arrays, ..., ..., self._values, self._on)
+        return partial_call(self.code, "substep_length", *arrays, ..., ..., self._values, self._on)
 
     @cached_property
     def _minimum_substep(self) -> Callable[..., float]:
@@ -200,7 +200,7 @@ class Stepper(ABC):
     def _advance_actuators(self) -> Callable[[float], None]:
         """`advance_actuators` of this vessel, a function of the length of the step."""
         arrays = self._commands, self._memory
-        return prepare_call(
+        return partial_call(
             self.code, "advance_actuators", *arrays, ..., self._values, self._on, self._act
         )
 

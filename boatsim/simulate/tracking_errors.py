@@ -29,7 +29,7 @@ class TrackingErrorSums:
         self._sums: dict[str, ErrorSums] = {}  # by the goal's key
         self._last: Recording | None = None  # last row, which holds until the next one
 
-    def add(self, log: Recording) -> None:
+    def add_rows(self, log: Recording) -> None:
         """Include the next rows of the log in the tracking errors."""
         if self._last:
             log = join_recordings([self._last, log])
@@ -88,7 +88,7 @@ class ErrorSums(NamedTuple):
 def compute_errors(log: Recording) -> dict[str, float]:
     """Return the tracking errors of all goals in a complete log: metric -> value."""
     tally = TrackingErrorSums()
-    tally.add(log)
+    tally.add_rows(log)
     return tally.metrics()
 
 

@@ -28,7 +28,7 @@ class Outcome:
     complete: bool
 
     @property
-    def failed(self) -> int:
+    def failed_count(self) -> int:
         """Number of tasks of the campaign that failed."""
         return sum(entry["failure"] is not None for entry in self.entries.values())
 
@@ -78,7 +78,7 @@ def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_p
         results = backend(campaign.work, pending, stop) if before < count else ()
         for number, result in results:
             entry = {"failure": KILLED} if result is None else result
-            journal.add(number, entry)
+            journal.append_result(number, entry)
             failed += entry["failure"] is not None
             done = len(journal.done)
             rate = (done - before) / max(monotonic() - start, 1e-9)

@@ -89,7 +89,7 @@ def sensitivity_indices(results: Results) -> list[Index]:
         The indices; none if the sweep is not complete or not of Saltelli's design.
     """
     plan = results.plan
-    if plan.design != "sobol" or len(results.numbers) < plan.run_count:
+    if plan.design != "sobol" or len(results.run_numbers) < plan.run_count:
         return []
     names = [sampled.target.name for sampled in plan.sampled]
     found: list[Index] = []

@@ -65,9 +65,9 @@ class Journal:
         file.truncate(size)
         self._growing = AppendedFile(file, path, size)
         if not size:
-            self._growing.add(_encode_line(about))
+            self._growing.append(_encode_line(about))
 
-    def add(self, number: int, entry: Entry) -> None:
+    def append_result(self, number: int, entry: Entry) -> None:
         """Append the result of a task to the journal; it is on the disk when this returns.
 
         Args:
@@ -78,7 +78,7 @@ class Journal:
             OSError: The file cannot be written.
         """
         line = _encode_line({"run": number, **entry})
-        self._growing.add(line)
+        self._growing.append(line)
         self.done[number] = json.loads(line)  # the same values as after a restart
 
     def __enter__(self) -> Self:

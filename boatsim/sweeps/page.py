@@ -9,7 +9,7 @@ from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
 from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
 from boatsim.sweeps.results import Results
-from boatsim.sweeps.sentence import Picture, first_picture, what_came_out, what_varied
+from boatsim.sweeps.sentence import Picture, headline_figure, result_sentence, varied_keys_sentence
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Block, Figures, Heading, Items, Section, Table
@@ -29,7 +29,7 @@ def write_report(results: Results, folder: Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    picture = first_picture(results)
+    picture = headline_figure(results)
     plots = _plot_sections(results, picture)
     sections = [_failure_section(results), *plots, *_table_sections(results)]
     sections = [section for section in sections if section.blocks]
@@ -37,8 +37,8 @@ def write_report(results: Results, folder: Path) -> None:
     page = render_template(
         TEMPLATE,
         title=_page_title(results),
-        varied=what_varied(results),
-        came_out=what_came_out(results),
+        varied=varied_keys_sentence(results),
+        came_out=result_sentence(results),
         picture=picture,
         facts=facts,
         sections=sections,
@@ -52,7 +52,7 @@ def _page_title(results: Results) -> str:
     what = f"{len(names)} scenarios"
     if len(names) == 1:
         what = results.labels[names[0]]
-    return f"{what}: {len(results.numbers)} runs"
+    return f"{what}: {len(results.run_numbers)} runs"
 
 
 def _page_facts(results: Results) -> list[tuple[str, str]]:
@@ -63,7 +63,7 @@ def _page_facts(results: Results) -> list[tuple[str, str]]:
         for axis in plan.axes
     ]
     sampled = [f"{one.target.name}: {one}" for one in plan.sampled]
-    done = len(results.numbers)
+    done = len(results.run_numbers)
     failed = f"{int(results.failed_mask.sum())} of {done} runs"
     if done < plan.run_count:
         failed += f" (of {plan.run_count}: interrupted)"

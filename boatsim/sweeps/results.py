@@ -35,7 +35,7 @@ class Results:
     selection: tuple[str, ...] = ()
 
     @cached_property
-    def numbers(self) -> list[int]:
+    def run_numbers(self) -> list[int]:
         """Numbers of the finished runs in the sweep's plan."""
         return list(self.entries)
 
@@ -66,7 +66,7 @@ class Results:
     @cached_property
     def point_numbers(self) -> Array:
         """Number of the grid point of each finished run (R,)."""
-        return np.array(self.numbers, dtype=int) // len(self.plan.samples)
+        return np.array(self.run_numbers, dtype=int) // len(self.plan.samples)
 
     @cached_property
     def sample_numbers(self) -> Array:
@@ -74,7 +74,7 @@ class Results:
 
         Runs with the same number have the same sampled values.
         """
-        return np.array(self.numbers, dtype=int) % len(self.plan.samples)
+        return np.array(self.run_numbers, dtype=int) % len(self.plan.samples)
 
     @cached_property
     def failed_mask(self) -> Array:
@@ -102,7 +102,7 @@ class Results:
             name: Name of the column.
         """
         index = self.plan.columns.index(name)
-        return [self.plan.run_values(number)[index] for number in self.numbers]
+        return [self.plan.run_values(number)[index] for number in self.run_numbers]
 
     @property
     def failure_counts(self) -> dict[str, int]:
@@ -112,15 +112,15 @@ class Results:
     def columns(self) -> dict[str, Sequence[Any]]:
         """Return all columns of a sweep's table, from varied values to metrics and failures."""
         columns: dict[str, Sequence[Any]] = {
-            "run": self.numbers,
+            "run": self.run_numbers,
             "point": self.point_numbers.tolist(),
             "draw": self.sample_numbers.tolist(),
         }
-        rows = list(map(self.plan.run_values, self.numbers))
+        rows = list(map(self.plan.run_values, self.run_numbers))
         for index, name in enumerate(self.plan.columns):
             columns[name] = list(map(itemgetter(index), rows))
         if "seed" not in self.plan.columns:
-            columns["seed"] = list(map(self.plan.run_seed, self.numbers))
+            columns["seed"] = list(map(self.plan.run_seed, self.run_numbers))
         for name in self.units:
             columns[name] = self._metric_values(name)
         columns["guards_met"] = [entry.get("met") for entry in self.entries.values()]

@@ -16,7 +16,7 @@ from boatsim.sweeps.plots import (
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.summary import CONTROLLER, Pair, compare_controllers
 from boatsim.sweeps.text_tables import format_number, format_values
-from boatsim.view.formatting import join_words, words_of_name
+from boatsim.view.formatting import join_words, name_in_words
 
 MOST_VALUES = 4  # of a list that the sentence names
 NOTABLE = 0.2  # range of a metric by its largest size; a smaller change is of little interest
@@ -43,18 +43,18 @@ def key_in_words(key: str) -> str:
     """
     if key == CONTROLLER:
         return "the controller"
-    words = words_of_name(key.rstrip("*+")).replace(".", " ")
+    words = name_in_words(key.rstrip("*+")).replace(".", " ")
     ending = {"*": " factor", "+": " offset"}.get(key[-1:], "")
     return f"{words}{ending}"
 
 
-def what_varied(results: Results) -> str:
+def varied_keys_sentence(results: Results) -> str:
     """Return a sentence on the runs of a sweep and on what was varied.
 
     Args:
         results: Results of a sweep.
     """
-    plan, done = results.plan, len(results.numbers)
+    plan, done = results.plan, len(results.run_numbers)
     names = [results.labels[name] for name in plan.scenarios]
     where = names[0]
     if len(names) > 1:
@@ -89,7 +89,7 @@ def _values(axis: Axis, labels: Mapping[str, str]) -> str:
     return join_words(texts, "or")
 
 
-def what_came_out(results: Results) -> str:
+def result_sentence(results: Results) -> str:
     """Return a sentence on the result of a sweep, for one metric.
 
     It compares the controllers, or states how the metric depends on the first varied number, or how
@@ -114,7 +114,7 @@ def what_came_out(results: Results) -> str:
 
 
 def headline_metric(results: Results) -> str | None:
-    """Return the metric of the first sentence and picture.
+    """Return the metric of a sweep that the report's first sentence and figure show.
 
     With controllers it is that of the clearest difference. Otherwise it is the one with the
     strongest rank correlation with a varied or sampled number, where a metric that changes by less
@@ -151,7 +151,7 @@ def _strongest_correlation(results: Results, values: Array, finite: Array) -> fl
     return max(sizes, default=0.0)
 
 
-def first_picture(results: Results) -> Picture | None:
+def headline_figure(results: Results) -> Picture | None:
     """Return the figure of the headline metric against the first quantity that varied.
 
     Args:
@@ -187,7 +187,7 @@ def _clearest(pairs: Sequence[Pair]) -> Pair:
 def _controllers_compared(pairs: Sequence[Pair], labels: Mapping[str, str]) -> str:
     pair = _clearest(pairs)
     first, second = labels.get(pair.first, pair.first), labels.get(pair.second, pair.second)
-    metric = words_of_name(pair.norm)
+    metric = name_in_words(pair.norm)
     unit = f" {pair.unit}".rstrip()
     means = f"{_number(pair.of_second)} and {_number(pair.of_first)}{unit}"
     if not pair.sure > 0.0:
@@ -214,11 +214,11 @@ def _over_axis(results: Results, metric: str, axis: Axis) -> str:
         medians.append(_median(results.metrics[metric][x == place]))
     found = np.array(medians)
     if not np.isfinite(found).any():
-        return f"{words_of_name(metric)} has no value."
+        return f"{name_in_words(metric)} has no value."
     key, unit = key_in_words(axis.target.name), f" {results.units[metric]}".rstrip()
     low, high = int(np.nanargmin(found)), int(np.nanargmax(found))
     median = "The median of " if len(results.plan.samples) > 1 else ""
-    subject = f"{median}{words_of_name(metric)}"
+    subject = f"{median}{name_in_words(metric)}"
     return (
         f"{subject[0].upper()}{subject[1:]} is lowest at {key} = {places[low]:.4g} "
         f"({_number(found[low])}{unit}) and highest at {places[high]:.4g} "
@@ -234,11 +234,11 @@ def _over_list(results: Results, metric: str, axis: Axis) -> str:
         found[text] = _median(results.metrics[metric][used == text])
     finite = {text: value for text, value in found.items() if np.isfinite(value)}
     if not finite:
-        return f"{words_of_name(metric)} has no value."
+        return f"{name_in_words(metric)} has no value."
     low, high = min(finite, key=finite.__getitem__), max(finite, key=finite.__getitem__)
     unit = f" {results.units[metric]}".rstrip()
     return (
-        f"The median of {words_of_name(metric)} is lowest with {results.labels.get(low, low)} "
+        f"The median of {name_in_words(metric)} is lowest with {results.labels.get(low, low)} "
         f"({_number(finite[low])}{unit}) and highest with {results.labels.get(high, high)} "
         f"({_number(finite[high])}{unit})."
     )
@@ -251,7 +251,7 @@ def _over_samples(results: Results, metric: str) -> str:
     low, middle, high = np.quantile(values[finite], (0.05, 0.5, 0.95)).tolist()
     unit = f" {results.units[metric]}".rstrip()
     sentence = (
-        f"{words_of_name(metric)} has a median of {_number(middle)}{unit}; 90 % of the runs "
+        f"{name_in_words(metric)} has a median of {_number(middle)}{unit}; 90 % of the runs "
         f"lie between {_number(low)} and {_number(high)}{unit}"
     )
     for key, _, correlation in rank_correlations(results, values, finite)[:1]:

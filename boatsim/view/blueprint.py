@@ -65,12 +65,8 @@ def sample_style(boat: str, colour: Colour) -> rr.SeriesPoints:
     return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
 
-def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
-    """Return the style of a curve of a missing force, of its band, or of its flagged part.
-
-    Args:
-        name: Column of the curve; its ending distinguishes the three.
-        flagged: Colour of the flagged part.
+def missing_force_style(name: str, flagged: Colour) -> rr.SeriesLines:
+    """Return the style of a missing-force curve: the force, its 2-sd band, or its flagged part.
 
     Args:
         name: Column of the curve; its ending distinguishes the three.
@@ -187,7 +183,7 @@ def comparison_layout(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.B
     """
     names = list(dict.fromkeys(chain.from_iterable(boats.values())))
 
-    def plot(signal: str) -> rrb.TimeSeriesView:
+    def signal_plot(signal: str) -> rrb.TimeSeriesView:
         curves: list[str] = []
         for boat, own in boats.items():
             curves += [f"{boat}/{name}" for name in select_signals_and_goals([signal], own)]
@@ -208,7 +204,9 @@ def comparison_layout(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.B
         rrb.TextDocumentView(origin="norms", name="Metrics"),
         row_shares=[3, 2],
     )
-    plots = [rrb.Tabs(*map(plot, part)) for part in (motion[::2], motion[1::2], drives) if part]
+    plots = [
+        rrb.Tabs(*map(signal_plot, part)) for part in (motion[::2], motion[1::2], drives) if part
+    ]
     return _layout(left, *plots)
 
 
@@ -263,17 +261,17 @@ def _signal_tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
     sent = [name.removeprefix("actual_") for name in actual]
     drives = [*filter(set(names).__contains__, sent), *actual]
 
-    def matching(pattern: str) -> list[str]:
+    def names_matching(pattern: str) -> list[str]:
         return [name for name in names if re.fullmatch(pattern, name)]
 
     groups = {
         "Thrust": [name for name in drives if "thrust" in name],
         "Steering": [name for name in drives if "thrust" not in name],
-        "PWM": matching("pwm_.*"),
-        "Estimates": matching("estimate_.*"),
-        "Forces": matching("(force|wind)_.*_N"),
-        "Yaw moments": matching("(force|wind)_.*_Nm"),
-        "Heading": matching(".*psi_rad"),
+        "PWM": names_matching("pwm_.*"),
+        "Estimates": names_matching("estimate_.*"),
+        "Forces": names_matching("(force|wind)_.*_N"),
+        "Yaw moments": names_matching("(force|wind)_.*_Nm"),
+        "Heading": names_matching(".*psi_rad"),
         "Position": select_signals_and_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
     return [_signal_plot(title, members) for title, members in groups.items() if members]

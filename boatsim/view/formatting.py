@@ -28,7 +28,7 @@ STRENGTHS = ((5.0, "very strong"), (3.0, "strong"), (1.1, "positive"), (0.0, "sl
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def words_of_name(name: str) -> str:
+def name_in_words(name: str) -> str:
     """Return a name from a file as words, without underscores: `weak_reverse` -> weak reverse."""
     return name.replace("_", " ")
 
@@ -287,16 +287,16 @@ def name_and_unit(key: str, unit: str = "") -> tuple[str, str]:
     """
     compact = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     if compact and key.endswith(f"_{compact}"):
-        return words_of_name(key.removesuffix(f"_{compact}")), unit
+        return name_in_words(key.removesuffix(f"_{compact}")), unit
     if unit:
-        return words_of_name(key), unit
+        return name_in_words(key), unit
     name, _, ending = key.rpartition("_")
     unit = unit_of(key)
     if not unit and name and UNIT.fullmatch(ending):
         unit = _unit_from_key(ending)
     if not unit:
-        return words_of_name(key), ""
-    return words_of_name(name), unit
+        return name_in_words(key), ""
+    return name_in_words(name), unit
 
 
 def _unit_from_key(compact: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.atomic_folder import PART
-from boatsim.view.formatting import capitalize, join_words, words_of_name
+from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.run_facts import plain_name
 from boatsim.view.run_sentence import run_sentence, run_verdict
 
@@ -158,7 +158,7 @@ def _diagnosis_result(answer: Mapping[str, Any]) -> str:
         if names:
             ending = "s" if len(names) > 1 else ""
             counted = what.replace("effect", f"effect{ending}").replace("error", f"error{ending}")
-            parts.append(f"{len(names)} {counted}: {join_words(map(words_of_name, names))}")
+            parts.append(f"{len(names)} {counted}: {join_words(map(name_in_words, names))}")
     if parts:
         return capitalize(f"{'; '.join(parts)}.")
     sentence, _, _ = str(answer["sentence"]).partition(". ")
@@ -177,7 +177,7 @@ def _campaign_entry(folder: Path, file: Path) -> IndexEntry:
     parts = [f"{len(done)} runs{ending}"]
     for key, words in (("vary", "varied"), ("draw", "sampled")):
         if about[key]:
-            keys = [words_of_name(name).replace(".", " ") for name in about[key]]
+            keys = [name_in_words(name).replace(".", " ") for name in about[key]]
             parts.append(f"{words}: {', '.join(keys)}")
     names = [plain_name(name) for name in about["scenarios"]]
     name = names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"

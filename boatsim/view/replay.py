@@ -91,7 +91,7 @@ def rounded_or_none(values: Array, decimals: int) -> list[float | None]:
     return numbers
 
 
-def with_margin(limits: tuple[float, float]) -> tuple[float, float]:
+def axis_limits_with_margin(limits: tuple[float, float]) -> tuple[float, float]:
     """Return limits of an axis with room for boats at the ends of their paths."""
     low, high = limits
     return low - MARGIN * (high - low), high + MARGIN * (high - low)

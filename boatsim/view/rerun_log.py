@@ -210,7 +210,9 @@ def write_diagnosis_log(
         marked = replace(missing, signals={**missing.signals, **_flagged_force(missing, intervals)})
         for name in marked.signals:
             stream.log(
-                f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True
+                f"missing/{name}",
+                blueprint.missing_force_style(name, COLOURS["flagged"]),
+                static=True,
             )
         _log_signals(stream, marked, "missing")
     firsts = [segments[0].signals for segments in reversed(list(boats.values()))]
@@ -418,7 +420,7 @@ def _draw_outline(
     stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
 ) -> None:
     """Draw the outline of the hull from above, a line from its middle to the bow, and its name."""
-    ring = scene.outline()
+    ring = scene.hull_outline()
     height, bow, stern = (
         _line_height(scene, number),
         float(ring[:, 0].max()),

@@ -12,7 +12,7 @@ from boatsim.view.formatting import (
     format_quantity,
     join_words,
     name_and_unit,
-    words_of_name,
+    name_in_words,
 )
 
 ENVIRONMENT = {  # heading -> effects of the library that belong to it
@@ -24,7 +24,7 @@ Settings = Mapping[str, object]
 
 
 def run_facts(scenario: Scenario, result: RunEntry) -> list[tuple[str, str]]:
-    """Return what was run, as pairs of a label and a text.
+    """Return vessel, controller, water, seed and so on of a run, as pairs of label and text.
 
     Args:
         scenario: The scenario.
@@ -33,7 +33,7 @@ def run_facts(scenario: Scenario, result: RunEntry) -> list[tuple[str, str]]:
     file = scenario.file
     vessel = scenario.vessel.name
     if scenario.vessel.load:
-        vessel += f" ({join_words(map(words_of_name, scenario.vessel.load))})"
+        vessel += f" ({join_words(map(name_in_words, scenario.vessel.load))})"
     facts = [
         ("Vessel", vessel),
         ("Controller", plain_name(result["controller"])),
@@ -150,8 +150,8 @@ def _described(effect: Effect, settings: Settings) -> str:
     for key, value in settings.items():
         if isinstance(value, int | float) and not isinstance(value, bool):
             unit = type(effect).params()[key].unit
-            numbers.append(f"{words_of_name(key)} {format_quantity(float(value), unit)}")
-    name = words_of_name(effect.name)
+            numbers.append(f"{name_in_words(key)} {format_quantity(float(value), unit)}")
+    name = name_in_words(effect.name)
     if not numbers:
         return name
     return f"{name} ({', '.join(numbers)})"

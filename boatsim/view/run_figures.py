@@ -10,7 +10,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import COMPONENTS, measured_column_for_goal
 from boatsim.recordings.notes import unit_of
 from boatsim.simulate.tracking_errors import GOAL
-from boatsim.view.formatting import capitalize, convenient_unit, words_of_name
+from boatsim.view.formatting import capitalize, convenient_unit, name_in_words
 from boatsim.view.svg_plots import Line, Panel, axis_limits, figure
 from boatsim.view.thinned_log import Samples
 
@@ -196,7 +196,7 @@ def _plain_name(column: str) -> str:
     """Return the name of a column in words, without its unit."""
     if unit_of(column):
         column = column.rpartition("_")[0]
-    return words_of_name(column)
+    return name_in_words(column)
 
 
 def _finite_pieces(values: Array) -> list[slice]:
@@ -219,7 +219,7 @@ def signal_panel(samples: Samples, plot: Plot, shafts: bool = False) -> Panel:
         plot: The signals.
         shafts: Whether the signals are of actuators: the speed of a shaft stays in rad/s.
     """
-    drawn = [samples.curve(curve.column) for curve in plot.curves]
+    drawn = [samples.thinned_curve(curve.column) for curve in plot.curves]
     largest = max(float(np.nanmax(np.abs(values), initial=0.0)) for _, values in drawn)
     unit, factor = convenient_unit(unit_of(plot.curves[0].column), largest)
     if shafts and unit == "°/s":

@@ -23,20 +23,20 @@ def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
     """
 
     @contextmanager
-    def write_file(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
+    def rerun_file_observer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
         scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         with RerunLog(folder / FILE, scene) as log:
             yield log
 
     @contextmanager
-    def feed_viewer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
+    def rerun_viewer_observer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
         scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         with RerunLog(None, scene, viewer) as log:
             yield log
 
     if viewer is None:
-        return [write_file]
-    return [write_file, feed_viewer]
+        return [rerun_file_observer]
+    return [rerun_file_observer, rerun_viewer_observer]
 
 
 def page_observer(scenario: Scenario, command: str = "") -> StartObserver:
@@ -48,8 +48,8 @@ def page_observer(scenario: Scenario, command: str = "") -> StartObserver:
     """
 
     @contextmanager
-    def write_page(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
+    def run_page_observer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
         scene = scene_from_model(engine.model, engine.vessel, engine.tank)
         yield RunPage(folder, scene, scenario, command)
 
-    return write_page
+    return run_page_observer

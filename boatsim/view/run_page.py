@@ -69,10 +69,10 @@ class RunPage:
         Args:
             rows: Rows that follow those received before.
         """
-        self._log.add(rows)
+        self._log.add_rows(rows)
 
     def finish(self, result: RunEntry) -> None:
-        """Write the page.
+        """Write the page report.html at the end of the run.
 
         Args:
             result: Content of norms.json.
@@ -102,7 +102,7 @@ def run_html(
     command: str,
     files: list[tuple[str, str]],
 ) -> str:
-    """Return the page of a run.
+    """Return the page of a run as HTML.
 
     Args:
         scenario: The scenario.

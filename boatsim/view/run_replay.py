@@ -19,10 +19,10 @@ from boatsim.view.replay import (
     Outline,
     Readout,
     Replay,
+    axis_limits_with_margin,
     playback_speed,
     rounded_or_none,
     scaled_outline,
-    with_margin,
 )
 from boatsim.view.run_figures import MOTION, Curve, Plot, signal_panel
 from boatsim.view.scene import Scene
@@ -48,7 +48,7 @@ READOUTS = {"u_mps": "surge", "v_mps": "sway", "psi_rad": "heading", "phi_rad": 
 
 
 def run_replay(samples: Samples, scene: Scene) -> Replay | None:
-    """Return the replay of a run.
+    """Return the animated replay of a run: the boat seen from above, or a signal over time.
 
     Args:
         samples: Samples of its log.
@@ -96,8 +96,8 @@ def _path(samples: Samples, scene: Scene) -> Replay:
     panel = Panel(
         "x, forward or north [m]",
         tuple(lines),
-        with_margin(_about_middle(left, right, SQUARE * height)),
-        with_margin(_about_middle(bottom, top, height)),
+        axis_limits_with_margin(_about_middle(left, right, SQUARE * height)),
+        axis_limits_with_margin(_about_middle(bottom, top, height)),
         "y, to starboard or east [m]",
         shape=SQUARE,
         dots=tuple(dots),
@@ -126,7 +126,7 @@ def _signal_over_time(samples: Samples, signal: str) -> Replay:
         name = signals.get(signal, name)
     panel = signal_panel(samples, Plot(name, (Curve(signal, "path", name),)))
     height = panel.y[1] - panel.y[0]
-    panel = replace(panel, x=with_margin(panel.x))
+    panel = replace(panel, x=axis_limits_with_margin(panel.x))
     outline = scaled_outline(MARK, MARK_SIZE * height, MARK_SIZE * height)
     if signal == "phi_rad":
         outline = scaled_outline(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
@@ -168,7 +168,7 @@ def _about_middle(low: float, high: float, size: float) -> tuple[float, float]:
 def _hull_outline(scene: Scene, scale: float) -> Outline:
     """Return the outline of the hull from above, to starboard and astern."""
     found = []
-    for x, y in scene.outline().tolist():  # forward and to port
+    for x, y in scene.hull_outline().tolist():  # forward and to port
         found.append((float(f"{-scale * y:.4g}"), float(f"{-scale * x:.4g}")))
     return found
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from boatsim.simulate.evaluation import MISSED, MetricEntry, RunEntry
-from boatsim.view.formatting import join_words, words_of_name
+from boatsim.view.formatting import join_words, name_in_words
 
 MOST_NAMED = 3  # metrics outside their bands that the sentence names
 
@@ -61,7 +61,7 @@ def _listed(metrics: Mapping[str, MetricEntry]) -> str:
         return "Finished; this scenario has no metrics"
     named = []
     for name in list(metrics)[:MOST_NAMED]:
-        named.append(f"{words_of_name(name)} {_value(metrics[name])}")
+        named.append(f"{name_in_words(name)} {_value(metrics[name])}")
     if len(metrics) > MOST_NAMED:
         named.append(f"{len(metrics) - MOST_NAMED} more")
     return f"No metric has a regression band: {join_words(named)}"
@@ -69,7 +69,7 @@ def _listed(metrics: Mapping[str, MetricEntry]) -> str:
 
 def _outside(name: str, entry: MetricEntry) -> str:
     """Return a metric outside its band with its value."""
-    return f"{words_of_name(name)} ({_value(entry)})"
+    return f"{name_in_words(name)} ({_value(entry)})"
 
 
 def _value(entry: MetricEntry) -> str:

@@ -88,7 +88,7 @@ class Scene:
             times=times * self.times,
         )
 
-    def outline(self) -> Array:
+    def hull_outline(self) -> Array:
         """Return the outline of the drawn hull from above, a closed convex polygon (V, 2) [m]."""
         points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
         corners = ConvexHull(points).vertices

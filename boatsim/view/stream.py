@@ -79,7 +79,7 @@ class Stream:
             OSError: If the disk is full; then the file is as it was before.
         """
         if self._file and self._written and (new := self._written.read()):
-            self._file.add(b"".join(_split_messages(new, not self._has_header)))
+            self._file.append(b"".join(_split_messages(new, not self._has_header)))
             self._has_header = True
 
     def close(self) -> None:

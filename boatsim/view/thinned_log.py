@@ -34,7 +34,7 @@ class Samples(NamedTuple):
     rows: int
     end: float
 
-    def curve(self, name: str) -> tuple[Array, Array]:
+    def thinned_curve(self, name: str) -> tuple[Array, Array]:
         """Return times and values of a signal's curve, with the extremes of all buckets.
 
         Args:
@@ -62,7 +62,7 @@ class ThinnedLog:
         # three values (3, C, B) of each column in each bucket: first, lowest, highest
         self._buckets: list[Array] = []
 
-    def add(self, rows: Recording) -> None:
+    def add_rows(self, rows: Recording) -> None:
         """Add the next rows of the log; they have the columns of the first ones.
 
         Args:

@@ -9,7 +9,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 from boatsim.warp.on_mujoco import MujocoMotion
 from boatsim.warp.standalone import StandaloneMotion
 
@@ -59,11 +59,13 @@ class Batch(batch.Batch):
         self._double = double
         self._numbers = np.zeros(0, dtype=np.int64)  # (n,) number of each boat's vessel
         super().__init__(vessels, n, step, seeds=seeds)
-        self._there = Boats(self.program, self.n, step, device, "float64" if double else "float32")
+        self._there = DeviceBoats(
+            self.program, self.n, step, device, "float64" if double else "float32"
+        )
         self.motion: MujocoMotion | StandaloneMotion = (
             MujocoMotion(self._there, self.vessels) if mujoco else StandaloneMotion(self._there)
         )
-        self.send()
+        self.copy_inputs_to_device()
 
     def reset(
         self,
@@ -82,7 +84,7 @@ class Batch(batch.Batch):
         """Integrate the motion of all vessels, see `boatsim.simulate.batch.Batch.advance`."""
         if commands is not None:
             self._commands[:] = self._clip(commands, np.arange(self.n))
-        self.send()
+        self.copy_inputs_to_device()
         self.motion.advance(steps)
         self.t += steps * self.step
         self._ahead = True
@@ -127,7 +129,7 @@ class Batch(batch.Batch):
         self._read_from_device()
         super().sense(felt)
 
-    def send(self) -> None:
+    def copy_inputs_to_device(self) -> None:
         """Copy commands and times to the Warp device, and all other arrays if they changed."""
         self._there.commands.assign(self._commands)
         self._there.t.assign(self.t)

@@ -11,7 +11,7 @@ from boatsim.warp import program as programs
 from boatsim.warp.runtime import find_device, import_warp
 
 
-class Boats:
+class DeviceBoats:
     """Arrays of a batch of boats on a Warp device, with the program whose kernels use them.
 
     Each array has one row for each boat.
@@ -32,8 +32,11 @@ class Boats:
         self.code = program.module
         self.kernels: ModuleType = programs.import_program(program, real)
         self.real = getattr(self.wp, real)
-        self.commands = self.zeros(len(program.vessel.inputs))
-        self.memory, self.act = self.zeros(program.memory_size), self.zeros(program.held_size)
+        self.commands = self.zeros_per_boat(len(program.vessel.inputs))
+        self.memory, self.act = (
+            self.zeros_per_boat(program.memory_size),
+            self.zeros_per_boat(program.actuator_signal_size),
+        )
         self.t = self.copy_to_device(np.zeros(n), self.wp.float64)  # [s]
         self.reallocations = 0  # of arrays; a recorded graph of the GPU holds their addresses
         self.p = self.k = self.copy_to_device(np.zeros((0, 0)))
@@ -56,7 +59,7 @@ class Boats:
             self.p, self.k = self.copy_to_device(p), self.copy_to_device(k)
             self.reallocations += 1
 
-    def zeros(self, *shape: int) -> Any:
+    def zeros_per_boat(self, *shape: int) -> Any:
         """Return an array (n, ...) of zeros on the device, with a row for each boat."""
         return self.copy_to_device(np.zeros((self.n, *shape)))
 
@@ -69,7 +72,7 @@ class Boats:
         """
         return self.wp.array(values, dtype=kind or self.real, device=self.device)
 
-    def launch(self, kernel: str, *inputs: Any) -> None:
+    def launch_kernel(self, kernel: str, *inputs: Any) -> None:
         """Run a kernel of the program on the device, with one thread for each boat.
 
         Args:

@@ -17,7 +17,7 @@ from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 
 # Stages of a Runge-Kutta step: share of the step; actuators at its begin, middle or end
 STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))
@@ -33,7 +33,7 @@ IDLE = (
 class MujocoMotion:
     """Motion of a batch of boats on mujoco_warp: each boat is a world of one MuJoCo model."""
 
-    def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
+    def __init__(self, boats: DeviceBoats, vessels: Sequence[Vessel]) -> None:
         """Build the models.
 
         Args:
@@ -63,7 +63,9 @@ class MujocoMotion:
             self.data = mujoco_warp.put_data(
                 model, mujoco.MjData(model), nworld=boats.n, nconmax=0, njmax=0
             )
-        self._part, self._left, self._least, self._before = (boats.zeros() for _ in range(4))
+        self._part, self._left, self._least, self._before = (
+            boats.zeros_per_boat() for _ in range(4)
+        )
         self._ahead = boats.copy_to_device(np.zeros(boats.n), int)
         self._unfinished = boats.copy_to_device(np.zeros(1), int)
         self.model.opt.timestep = self._part
@@ -130,7 +132,7 @@ class MujocoMotion:
                 self._advance_part()
             while b.code.HAS_TIME_TO_DISCONTINUITY and self._has_steps_left():
                 self._advance_part()
-        b.launch("rest", self._part)
+        b.launch_kernel("rest", self._part)
 
     def _advance_part(self) -> None:
         """Integrate a part of a step of each boat."""
@@ -149,7 +151,7 @@ class MujocoMotion:
     def _step_all_boats(self) -> None:
         """Advance the actuators of each boat over a part of its step, then its motion."""
         b = self.boats
-        b.launch(
+        b.launch_kernel(
             "begin_part",
             b.commands,
             b.step,
@@ -170,7 +172,7 @@ class MujocoMotion:
         """Callback of mujoco_warp, called once for each stage."""
         (share, place), self._stage, b = STAGES[self._stage], self._stage + 1, self.boats
         at = place * int(b.code.HELD)
-        b.launch(
+        b.launch_kernel(
             "add_forces",
             b.t,
             self._part,
@@ -188,5 +190,5 @@ class MujocoMotion:
     def _has_steps_left(self) -> bool:
         """Whether any boat has steps left."""
         self._unfinished.zero_()
-        self.boats.launch("find_unfinished", self._ahead, self._left, self._unfinished)
+        self.boats.launch_kernel("find_unfinished", self._ahead, self._left, self._unfinished)
         return bool(self._unfinished.numpy()[0])

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.physics.signals import Array
-from boatsim.warp.device_state import Boats
+from boatsim.warp.device_state import DeviceBoats
 
 
 class StandaloneMotion:
@@ -13,9 +13,9 @@ class StandaloneMotion:
     It holds joint coordinates and rates of all boats.
     """
 
-    def __init__(self, boats: Boats) -> None:
+    def __init__(self, boats: DeviceBoats) -> None:
         self.boats = boats
-        self._y = boats.zeros(2 * boats.code.NQ)
+        self._y = boats.zeros_per_boat(2 * boats.code.NQ)
         self._none = boats.copy_to_device(np.zeros(boats.code.NQ))
 
     def assign_vessels(self, numbers: NDArray[np.int64]) -> None:
@@ -40,6 +40,6 @@ class StandaloneMotion:
             steps: Number of steps.
         """
         b = self.boats
-        b.launch(
+        b.launch_kernel(
             "run_on", b.commands, b.step, steps, b.p, b.k, self._none, b.t, self._y, b.memory, b.act
         )

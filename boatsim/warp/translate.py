@@ -113,13 +113,13 @@ class Translation:
         python = python_function(function)
         key = (python, tuple(kinds))
         if key not in self._known:
-            body = Body(self, python, kinds)
+            body = FunctionTranslator(self, python, kinds)
             self.functions.append(body.text())
             self._known[key] = body.name, body.returned
         return self._known[key]
 
 
-class Body:
+class FunctionTranslator:
     """Translates the body of one Python function to Warp's dialect, statement by statement."""
 
     def __init__(

@@ -9,7 +9,7 @@ from effect_cases import VESSEL, Case, all_cases
 from effect_examples import program, stored_outputs
 from page_markup import bullet_list, escaped, sentence, table_rows
 
-from boatsim.cli.entry import Entry, describe_class
+from boatsim.cli.entry import Entry, class_description
 from boatsim.files import array_of_tables
 from boatsim.physics import content
 from boatsim.physics.base import Effect
@@ -31,7 +31,7 @@ def page(name: str) -> str:
     Args:
         name: Name of the effect.
     """
-    entry = describe_class("effect", name)
+    entry = class_description("effect", name)
     kind = content.load_class("effect", name)
     summary, *rest = _paragraphs(entry)
     lines = [f"# {name}", "", f"{sentence(entry.words)}.", ""]

@@ -21,7 +21,7 @@ from boatsim.physics.base import (
     Measurement,
     SignalSegment,
     Wrench,
-    motion,
+    make_motion,
 )
 from boatsim.physics.debugging import python_function
 from boatsim.physics.signals import MeasuredMotion
@@ -193,9 +193,9 @@ def _evaluate(
         moves[over] = value
     if hasattr(kind, "water_velocity"):
         north, east = kind.water_velocity(effect.values())
-        moving = motion((north, east), **moves)
+        moving = make_motion((north, east), **moves)
         return moving.ur, moving.vr
-    arguments: list[Any] = [motion(**moves), effect.values()]
+    arguments: list[Any] = [make_motion(**moves), effect.values()]
     if hasattr(kind, "reaction"):
         others = Wrench(X=spec["others"])
         return tuple(python_function(kind.reaction)(arguments[0], others, arguments[1]))

@@ -12,8 +12,8 @@ import effect_pages
 from page_markup import bullet_list, escaped, row, sentence, table_rows
 
 from boatsim.cli import app as program
-from boatsim.cli.catalogue import describe
-from boatsim.cli.entry import CLASSES, describe_class
+from boatsim.cli.catalogue import item_descriptions
+from boatsim.cli.entry import CLASSES, class_description
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content
 
@@ -63,7 +63,7 @@ def _entry_page(kind: str, name: str) -> str:
     """Return the page of an effect, controller, set of metrics or sensor."""
     if kind == "effect":
         return effect_pages.page(name)
-    entry = describe_class(kind, name)
+    entry = class_description(kind, name)
     lines = [f"# {name}", "", f"{sentence(entry.words)}.", ""]
     if entry.doc:
         lines += [*map(escaped, entry.doc), ""]
@@ -76,7 +76,7 @@ def _entry_page(kind: str, name: str) -> str:
 
 def _vessel_page(name: str) -> str:
     """Return what `boatsim show` prints of a vessel, without the path of its file."""
-    lines = describe(name)
+    lines = item_descriptions(name)
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
     if "" in lines:
         lines = lines[: lines.index("")]

@@ -19,7 +19,7 @@ from boatsim.control.adaptive import (
     LinearSystem,
     PiecewiseConstant,
     Predictor,
-    l1_condition,
+    l1_condition_value,
     l1_norm,
     l1_norm_of_outputs,
     loop_margins,
@@ -42,7 +42,7 @@ def project_ball(
     this radius."""
     square = sum(t * t for t in theta)
     along = sum(t * y for t, y in zip(theta, rate, strict=True))
-    share = adaptive.projection_share(square, along, radius, tolerance)
+    share = adaptive.projection_factor(square, along, radius, tolerance)
     return [y - share * t for t, y in zip(theta, rate, strict=True)]
 
 
@@ -169,7 +169,9 @@ def test_l1_norms_of_example_a() -> None:
         (60.0, 0.756, 5e-4),
         (30.0, 1.437, 5e-4),
     ):
-        found = l1_condition(l1_norm(uncertainty_to_state_system(AM, (0.0, 1.0), bandwidth)), 20.0)
+        found = l1_condition_value(
+            l1_norm(uncertainty_to_state_system(AM, (0.0, 1.0), bandwidth)), 20.0
+        )
         assert found == pytest.approx(value, abs=digit)
 
 
@@ -178,7 +180,9 @@ def test_l1_condition_of_the_water_jet_cruise_control() -> None:
     print)."""
 
     def condition(k: float) -> float:
-        return l1_condition(l1_norm(uncertainty_to_state_system([[-1.4]], [1.0], 0.1 * k)), 1.7716)
+        return l1_condition_value(
+            l1_norm(uncertainty_to_state_system([[-1.4]], [1.0], 0.1 * k)), 1.7716
+        )
 
     assert condition(12.04) > 1.0 > condition(12.14)
     assert condition(35.0) == pytest.approx(0.55, abs=5e-3)
@@ -246,8 +250,8 @@ def compiled(block: Any, **replaced: Any) -> Any:
     return njit(FunctionType(block.__code__, block.__globals__ | replaced))
 
 
-ball_share = compiled(adaptive.projection_share)
-interval = compiled(adaptive.project_interval, projection_share=ball_share)
+ball_share = compiled(adaptive.projection_factor)
+interval = compiled(adaptive.project_interval, projection_factor=ball_share)
 
 
 class Figures(NamedTuple):

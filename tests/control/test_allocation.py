@@ -183,13 +183,13 @@ def test_pwm_and_thrust_are_inverse_above_the_dead_band(
     pwm: int, dead: float, power: float
 ) -> None:
     motor = Outboards(dead_pwm=dead, thrust_power=power)
-    assert motor.pwm_for_thrust(motor.thrust(pwm)) == (
+    assert motor.pwm_for_thrust(motor.thrust_at_pwm(pwm)) == (
         pwm if abs(pwm) > dead + 1 else pytest.approx(0, abs=dead + 1)
     )
 
 
 def test_a_motor_gives_less_astern() -> None:
-    assert (OURS.thrust(150), OURS.thrust(-150)) == pytest.approx((0.5, -0.335))
+    assert (OURS.thrust_at_pwm(150), OURS.thrust_at_pwm(-150)) == pytest.approx((0.5, -0.335))
     assert (
         OURS.pwm_for_thrust(0.25),
         OURS.pwm_for_thrust(-0.25),
@@ -221,7 +221,7 @@ def test_commands_are_mirror_angles_by_name() -> None:
 
 
 def test_sway_thrust_follows_the_stick_beyond_its_dead_zone() -> None:
-    asked = [OURS.sway_difference(v) for v in (0.0, 0.0069, 0.035, -0.07, 1.0)]
+    asked = [OURS.thrust_difference_for_sway(v) for v in (0.0, 0.0069, 0.035, -0.07, 1.0)]
     assert asked == pytest.approx([0.0, 0.0, 0.3, -0.6, 0.9])
 
 

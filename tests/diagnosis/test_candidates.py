@@ -12,11 +12,11 @@ from alike import few
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import AXES, Array, SignalSegment, Wrench, motion, segment_mean
+from boatsim.physics.base import AXES, Array, SignalSegment, Wrench, make_motion, segment_mean
 from boatsim.physics.effects.added_mass import AddedMass, AddedMassCoriolis
 from boatsim.physics.effects.command_delay import HISTORY, CommandDelay
 from boatsim.physics.effects.damping import LateralCentreShift, LinearDamping
@@ -105,23 +105,25 @@ def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     port, starboard = (e for e in otter.effects if isinstance(e, Propeller))
     walk = PropWalk(side_force_per_thrust=0.2, ahead_share=0.5).with_all_parameters(otter)
     program = Program(otter, candidates=(walk,))
-    act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
+    act, still = np.zeros(program.actuator_signal_size), np.zeros(2 * program.module.NQ)
     sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
     off, on = program.effect_switches(), program.effect_switches(["prop_walk"])
-    program.functions.settle_actuators(
+    program.estimation_functions.settle_actuators(
         sent, np.zeros(program.memory_size), program.values(), off, act
     )
     values = np.concatenate([program.values(), program.body])
     first = np.int64(0)
     forces = [
-        np.array(program.functions.total_body_force(0.0, still, act, first, values, switches))
+        np.array(
+            program.estimation_functions.total_body_force(0.0, still, act, first, values, switches)
+        )
         for switches in (off, on)
     ]
     Y = 0.2 * 2500.0 * (0.5 * port.ahead - starboard.astern)
     assert (forces[1] - forces[0])[1] == pytest.approx(Y, rel=1e-6)
     assert (
-        "thrust_loss_with_speed" in library_for(otter).tested
-        and "shaft_deadband" in library_for(otter).tested
+        "thrust_loss_with_speed" in candidate_library(otter).tested_names
+        and "shaft_deadband" in candidate_library(otter).tested_names
     )
 
 
@@ -157,7 +159,7 @@ def test_deadband_has_the_describing_function_of_the_textbook(share: float) -> N
 @pytest.mark.parametrize("fraction", [0.3, 1.0])
 def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -> None:
     water = AddedMass(surge=0.6, sway=3.0, yaw=0.3, sway_at=0.2)
-    m = motion(current=(0.1, -0.05), psi=0.4, u=1.0, v=0.3, r=0.2)
+    m = make_motion(current=(0.1, -0.05), psi=0.4, u=1.0, v=0.3, r=0.2)
     M, nu = water.matrix(), np.array([m.ur, m.vr, 0.0, 0.0, 0.0, m.r])
     Tu, Tv = (
         ((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(6)[:2]
@@ -177,7 +179,7 @@ def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starbo
     )
 
     def pushed(thrust: float) -> Wrench:
-        return walk.wrench(motion(), Thruster.signals_type()(thrust, 0.0, 1.0, 0.0), stern)
+        return walk.wrench(make_motion(), Thruster.signals_type()(thrust, 0.0, 1.0, 0.0), stern)
 
     assert pushed(-1.5) == pytest.approx(Wrench(Y=-0.135, N=0.081))
     assert pushed(1.0) == pytest.approx(Wrench(Y=0.03, N=-0.018))
@@ -188,7 +190,7 @@ def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shi
     boat = replace(BOAT, effects=(LinearDamping(sway=10.0),)).with_completed_effect(
         LateralCentreShift(shift=shift)
     )
-    m = motion(v=0.3, r=-0.5)
+    m = make_motion(v=0.3, r=-0.5)
     own: Any = boat.effects[0]
     both = own.wrench(m)
     assert both.N == pytest.approx(shift * both.Y)  # one force at one place
@@ -203,7 +205,7 @@ def test_tether_pulls_towards_its_anchor_with_tension_and_stretch() -> None:
     stern = np.array([0.5 - 0.6 * cos(psi), 0.2 - 0.6 * sin(psi)])
     reach = np.array([3.0, -2.0]) - stern
     distance = hypot(*reach)
-    seen = line.wrench(motion(x=0.5, y=0.2, psi=psi))
+    seen = line.wrench(make_motion(x=0.5, y=0.2, psi=psi))
     earth = [seen.X * cos(psi) - seen.Y * sin(psi), seen.X * sin(psi) + seen.Y * cos(psi)]
     assert earth == pytest.approx((0.05 + 0.2 * (distance - 1.0)) * reach / distance, rel=2e-3)
     assert seen.N == pytest.approx(-0.6 * seen.Y)
@@ -211,9 +213,9 @@ def test_tether_pulls_towards_its_anchor_with_tension_and_stretch() -> None:
 
 def test_slack_tether_keeps_its_weight_and_its_drag_takes_power_at_the_stern() -> None:
     slack = Tether(tension=0.05, stiffness=0.2, length=9.0, north=3.0).with_all_parameters(BOAT)
-    assert slack.wrench(motion()).X == pytest.approx(0.05, rel=1e-3)
+    assert slack.wrench(make_motion()).X == pytest.approx(0.05, rel=1e-3)
     line = Tether(drag=0.4).with_all_parameters(BOAT)
-    m = motion(u=0.2, v=-0.1, r=0.3)
+    m = make_motion(u=0.2, v=-0.1, r=0.3)
     force = line.wrench(m)
     assert force.X * m.u + force.Y * m.v + force.N * m.r == pytest.approx(
         -0.4 * (0.2**2 + (-0.1 - 0.6 * 0.3) ** 2)
@@ -225,15 +227,15 @@ def test_wall_effect_halves_with_every_ln2_of_its_reach_and_is_symmetric() -> No
         damping_rise=1.5, pull=0.1, x_low=-40.0, x_high=40.0, y_low=-30.0, y_high=30.0
     ).with_all_parameters(BOAT)
     near, far = (
-        wall.wrench(motion(y=30.0 - 0.6 * n * log(2.0), u=0.2, v=0.1, r=0.4)) for n in (1, 2)
+        wall.wrench(make_motion(y=30.0 - 0.6 * n * log(2.0), u=0.2, v=0.1, r=0.4)) for n in (1, 2)
     )
     assert near == pytest.approx(2.0 * np.array(far))
     assert near == pytest.approx(
         Wrench(X=-1.5 * 3 * 0.2 / 2, Y=0.05 - 1.5 * 10 * 0.1 / 2, N=-1.5 * 1 * 0.4 / 2)
     )
-    assert wall.wrench(motion(u=0.2, v=0.1, r=0.4)) == pytest.approx(Wrench(), abs=1e-12)
-    assert wall.wrench(motion(y=-29.0, psi=pi / 2)).X == pytest.approx(
-        -wall.wrench(motion(y=29.0, psi=pi / 2)).X
+    assert wall.wrench(make_motion(u=0.2, v=0.1, r=0.4)) == pytest.approx(Wrench(), abs=1e-12)
+    assert wall.wrench(make_motion(y=-29.0, psi=pi / 2)).X == pytest.approx(
+        -wall.wrench(make_motion(y=29.0, psi=pi / 2)).X
     )
 
 
@@ -266,7 +268,7 @@ def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(
 ) -> None:
     effect = effect.with_all_parameters(BOAT)
     nu, rates = np.array([0.4, -0.2, 0.9]), np.array([0.3, 0.5, -0.7])
-    m = motion(
+    m = make_motion(
         current=(0.3, 0.2), u=nu[0], v=nu[1], r=nu[2]
     )  # a current makes no difference to what moves on board
     plane = [AXES.index(axis) for axis in ("surge", "sway", "yaw")]
@@ -346,10 +348,10 @@ def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(
 def test_walls_that_nobody_states_are_not_tried_and_not_assumed() -> None:
     told = BOAT.diagnosis.facts["walls_m"]
     elsewhere = replace(BOAT, diagnosis=BOAT.diagnosis.model_copy(update={"facts": {}}))
-    assert "wall_effect" not in {e.name for e in library_for(elsewhere).entries}
+    assert "wall_effect" not in {e.name for e in candidate_library(elsewhere).entries}
     facts = {"walls_m": [-9.0, 8.0, -7.0, 6.0]}
-    (wall,) = (e for e in library_for(BOAT, (), facts).entries if e.name == "wall_effect")
-    (usual,) = (e for e in library_for(BOAT).entries if e.name == "wall_effect")
+    (wall,) = (e for e in candidate_library(BOAT, (), facts).entries if e.name == "wall_effect")
+    (usual,) = (e for e in candidate_library(BOAT).entries if e.name == "wall_effect")
     assert [getattr(wall, n) for n in ("x_low", "x_high", "y_low", "y_high")] == facts["walls_m"]
     assert [getattr(usual, n) for n in ("x_low", "x_high", "y_low", "y_high")] == told
     with pytest.raises(

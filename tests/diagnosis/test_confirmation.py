@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, push, sail
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
@@ -23,7 +23,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 
 ONLY = "weak_reverse"
-PROGRAM = Program(BOAT, library_for(BOAT).compiled)
+PROGRAM = Program(BOAT, candidate_library(BOAT).compiled_effects)
 
 
 def weak_astern(t: float, y: Array, command: Array) -> Array:
@@ -55,7 +55,7 @@ def fitted() -> tuple[Problem, Fit, Fit]:
         {"damping": 0.05, "thrust": 0.05},
     )
     _, without = fit_baseline(problem)
-    free = problem.parameters((ONLY,))
+    free = problem.free_parameters((ONLY,))
     start = unfitted_hypothesis((ONLY,), free, prior_arrays(free).mean, without.levels)
     return problem, without, converge(problem, start)
 

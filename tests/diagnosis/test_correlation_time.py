@@ -83,7 +83,10 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
     )
     ((first,), (second,)) = correlation_time.split_in_halves([whole])
     assert np.concatenate([first.times, second.times]) == pytest.approx(t)
-    assert len(first.times) == len(second.times) and second.initial.mean[0] == whole.measured[50, 0]
+    assert (
+        len(first.times) == len(second.times)
+        and second.initial_state_prior.mean[0] == whole.measured[50, 0]
+    )
     pair = correlation_time.split_in_halves([whole, first, second])
     assert [len(half) for half in pair] == [2, 1]
 

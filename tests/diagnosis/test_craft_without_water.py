@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import odeint
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -90,35 +90,35 @@ def floated(
 
 
 def ranked(*recordings: Recording) -> Ranking:
-    program = Program(CRAFT, library_for(CRAFT).compiled)
+    program = Program(CRAFT, candidate_library(CRAFT).compiled_effects)
     mapped = [map_recording(recording, program) for recording in recordings]
     problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
-    return rank(problem, TESTED)
+    return select_and_rank_candidates(problem, TESTED)
 
 
 def test_no_candidate_of_a_craft_without_water_needs_water():
-    floating = library_for(craft({"indoors": True}))
-    assert set(floating.tested) >= WATER
-    assert not set(library_for(CRAFT).tested) & WATER
+    floating = candidate_library(craft({"indoors": True}))
+    assert set(floating.tested_names) >= WATER
+    assert not set(candidate_library(CRAFT).tested_names) & WATER
 
 
 def test_slope_and_yaw_inertia_are_candidates_only_without_water():
     for name in ("slope", "yaw_inertia_error"):
-        assert name in library_for(CRAFT).tested
-        assert "no_water" in library_for(craft({})).inapplicable[name]
+        assert name in candidate_library(CRAFT).tested_names
+        assert "no_water" in candidate_library(craft({})).inapplicable[name]
 
 
 def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
-    assert names <= set(library_for(CRAFT).tested)
-    two = library_for(vessel.load_vessel("trial_boat"))
+    assert names <= set(candidate_library(CRAFT).tested_names)
+    two = candidate_library(vessel.load_vessel("trial_boat"))
     assert "fewer than 3" in two.inapplicable["drive_gain_error"]
 
 
 def test_no_mass_on_board_is_tested_where_the_craft_was_weighed():
-    assert {"extra_mass", "payload"} <= set(library_for(craft({})).tested)
-    weighed = library_for(craft({"weighed": True}))
-    assert not {"extra_mass", "payload"} & set(weighed.tested)
+    assert {"extra_mass", "payload"} <= set(candidate_library(craft({})).tested_names)
+    weighed = candidate_library(craft({"weighed": True}))
+    assert not {"extra_mass", "payload"} & set(weighed.tested_names)
     assert weighed.excluded["extra_mass"] == "weighed = true"
 
 

@@ -9,8 +9,8 @@ import pytest
 from pushed_boat import BOAT, laid, sail
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.divergence import divergences, has_diverged, raise_latent_force_level
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.divergence import find_divergences, has_diverged, raise_latent_force_level
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.missing_force import residual_force
 from boatsim.diagnosis.without_fit import results_without_fit
 from boatsim.errors import BadInput
@@ -35,12 +35,12 @@ def wrapped(recording: Recording) -> Recording:
     return replace(recording, signals={**recording.signals, "psi_rad": psi})
 
 
-def loaded(folder: Path, recordings: list[Recording]) -> Loaded:
+def loaded(folder: Path, recordings: list[Recording]) -> LoadedRecordings:
     paths = []
     for recording in recordings:
         paths.append(folder / f"{recording.name}.csv")
         write_csv(recording, paths[-1])
-    return loading.load(Request(paths[:-1], paths[-1:], vessel=BOAT.name))
+    return loading.load_recordings(Request(paths[:-1], paths[-1:], vessel=BOAT.name))
 
 
 def test_a_moment_too_large_for_any_fit_is_an_unknown_cause_in_yaw_from_its_begin_on(
@@ -73,7 +73,7 @@ def test_a_good_fit_is_not_lost_and_its_disturbance_is_not_raised() -> None:
     followed = raise_latent_force_level(problem, problem.recordings)
     np.testing.assert_array_equal(followed.levels.force, problem.ambient.force)
     forces = residual_force(problem, followed, problem.recordings)
-    assert len(divergences(problem, problem.recordings, forces)) == 1
+    assert len(find_divergences(problem, problem.recordings, forces)) == 1
 
 
 def test_a_failure_of_linear_algebra_becomes_an_answer(
@@ -82,7 +82,7 @@ def test_a_failure_of_linear_algebra_becomes_an_answer(
     def fail(_: object) -> None:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(pipeline, "fit", fail)
+    monkeypatch.setattr(pipeline, "fit_baseline_models", fail)
     runs = [sail(f"run_{seed}", seed, nothing)[0] for seed in (1, 2)]
     found = pipeline.diagnose_loaded(loaded(tmp_path, runs))
     assert found.findings.answer["verdict"] == "unknown"

@@ -69,7 +69,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
     said = []
     for share in (1.0, 0.1):
         laid = map_recording(run, program)
-        laid = replace(laid, specified_step=share * laid.step)
+        laid = replace(laid, specified_step=share * laid.largest_step)
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
         values[program.parameter_index("cubic_damping", "surge")] = 90.0
@@ -90,13 +90,15 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     means, covariances, _ = laid.smooth(
         laid.values, program.effect_switches(), prior_noise_levels(boat, [run])
     )
-    assert laid.initial.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
+    assert laid.initial_state_prior.rates[0] == pytest.approx(
+        24.0, abs=1.5
+    )  # of noisy fixes a second apart
     speed, sd = (
         means[0, program.module.NQ],
         covariances[0, program.module.NQ, program.module.NQ] ** 0.5,
     )
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
-    still = replace(laid.initial, rates=np.zeros(4))
+    still = replace(laid.initial_state_prior, rates=np.zeros(4))
     laid = replace(laid, specified_initial=still)
     assert laid.smooth(laid.values, program.effect_switches(), prior_noise_levels(boat, [run]))[0][
         0, 4
@@ -111,7 +113,7 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
     run.signals["psi_rad"] = run.signals["psi_rad"] + 2.0
     program = program_with_candidates(boat, ["cubic_damping"])
     laid = map_recording(run, program)
-    assert laid.initial.rates[:2] == pytest.approx(
+    assert laid.initial_state_prior.rates[:2] == pytest.approx(
         [24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5
     )
     means = laid.smooth(
@@ -139,7 +141,9 @@ def test_the_order_of_independent_calls_changes_no_number() -> None:
         errors = laid.whitened_errors(1.001 * laid.values, on, levels, about)
         smoothed = laid.smooth(laid.values, on, levels)
         (_, states), *_ = laid.free_runs(laid.values, on, levels, 5.0)
-        numbers = np.array([about.log_likelihood, other.log_likelihood, about.log_density])
+        numbers = np.array(
+            [about.log_likelihood, other.log_likelihood, about.log_density_at_predictions]
+        )
         return [numbers, about.whitened, other.whitened, errors, *smoothed, states]
 
     for one, other in zip(everything(first=True), everything(first=False), strict=True):

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from pushed_boat import push, sail
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
-from boatsim.diagnosis.loading import vessel_for
+from boatsim.diagnosis.loading import vessel_of_recording_file
 from boatsim.diagnosis.pipeline import diagnose
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.report.output_files import write_diagnosis
-from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -52,11 +52,13 @@ def sailed(odd) -> list[Recording]:
 
 
 def ranked(recordings: list[Recording]) -> tuple[Problem, Ranking]:
-    program = Program(BOAT, library_for(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled_effects)
     levels = prior_noise_levels(BOAT, recordings)
     mapped = [map_recording(recording, program) for recording in recordings]
     problem = Problem(mapped, levels, {"damping": 0.05, "thrust": 0.05})
-    return problem, rank(problem, (*TESTED, *problem.names_in_groups(TESTED)))
+    return problem, select_and_rank_candidates(
+        problem, (*TESTED, *problem.candidates_in_single_groups(TESTED))
+    )
 
 
 def test_names_of_groups_are_taken_apart_as_they_were_put_together():
@@ -103,7 +105,7 @@ def test_one_group_alone_gives_no_further_candidates():
     run, _ = sail("only", 1, undisturbed)
     problem, _ = ranked([replace(run, notes=replace(run.notes, groups=("blue",)))])
     assert problem.groups == ()
-    assert problem.names_in_groups(TESTED) == ()
+    assert problem.candidates_in_single_groups(TESTED) == ()
 
 
 @pytest.mark.slow
@@ -126,8 +128,8 @@ def test_the_answer_states_the_group_and_the_patched_file_has_it_as_a_load(tmp_p
     assert vessel.load_vessel(patched).effect("port").gain == pytest.approx(1.0, abs=0.05)
     loaded = vessel.load_vessel(patched, ["yellow"])
     assert loaded.effect("port").gain == pytest.approx(WEAK, abs=0.05)
-    assert vessel_for(files[-1], patched, ()).load == ("yellow",)
-    assert vessel_for(files[0], patched, ()).load == ()
+    assert vessel_of_recording_file(files[-1], patched, ()).load == ("yellow",)
+    assert vessel_of_recording_file(files[0], patched, ()).load == ()
 
 
 def test_a_run_may_belong_to_a_build_and_to_a_day():
@@ -135,7 +137,7 @@ def test_a_run_may_belong_to_a_build_and_to_a_day():
     for seed, groups in enumerate((("blue", "may"), ("blue", "june"), ("red", "may"), ("red",))):
         run, _ = sail(f"run_{seed}", seed, undisturbed)
         runs.append(replace(run, notes=replace(run.notes, groups=groups)))
-    program = Program(BOAT, library_for(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled_effects)
     mapped = [map_recording(run, program) for run in runs]
     problem = Problem(mapped, prior_noise_levels(BOAT, runs), {"thrust": 0.05})
     assert problem.groups == ("blue", "june", "may", "red")

@@ -11,12 +11,12 @@ from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.checks.cut_recordings import pieces_outside
+from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
 from boatsim.diagnosis.checks.rest import intervals_at_rest
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording
-from boatsim.diagnosis.input_noise import input_noise_density, interpolate_measured
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.input_noise import input_noise_density, interpolate_measured_inputs
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, TimedCommands
@@ -58,7 +58,7 @@ def recording(seed: int, seconds: float, push: bool) -> Recording:
 def test_the_diagnosis_names_the_friction_and_the_gain_and_reports_the_push() -> None:
     runs = [recording(1, 20.0, True).thinned(31.0), recording(2, 20.0, False).thinned(31.0)]
     held_out = recording(3, 15.0, False).thinned(31.0)
-    loaded = Loaded(runs, [held_out], {FILE: PENDULUM}, "run 3", horizon=1.0)
+    loaded = LoadedRecordings(runs, [held_out], {FILE: PENDULUM}, "run 3", horizon=1.0)
     answer = pipeline.diagnose_loaded(loaded).findings.answer
     named = {effect["name"]: effect["parameters"] for effect in answer["effects"]}
     assert set(named) == {"load_gain_error", "dry_friction"}, json.dumps(answer["sentence"])
@@ -84,7 +84,7 @@ def test_the_noise_of_a_measured_torque_is_found_at_any_rate() -> None:
 
 def test_a_measured_torque_follows_the_straight_line_between_its_samples() -> None:
     ramp = np.column_stack([np.arange(5.0), 10.0 * np.arange(5.0)])
-    found = interpolate_measured(ramp, [1])
+    found = interpolate_measured_inputs(ramp, [1])
     assert found[:, 0].tolist() == ramp[:, 0].tolist()
     assert found[:4, 1].tolist() == [5.0, 15.0, 25.0, 35.0]
 
@@ -104,7 +104,7 @@ def test_the_filter_with_noise_of_a_measured_force_equals_the_dense_gaussian() -
     held = np.append(F[:2, 2], 0.0)  # motion per unit of a moment that is held over h
     F[2, 2] = np.exp(-h / 1.5)
     Q = np.diag([0.0, 0.0, 9.0 * (1 - F[2, 2] ** 2)]) + np.outer(held, held) * white / h
-    P = found.initial.covariance.copy()
+    P = found.initial_state_prior.covariance.copy()
     P[0, 0], P[2, 2] = 1e-6, 9.0
     big, mean, centre = np.zeros((3 * n, 3 * n)), np.zeros(3 * n), np.array([phi[0], 0.0, 0.0])
     for i in range(n):
@@ -128,7 +128,7 @@ def test_stretches_at_rest_are_found_and_cut_out() -> None:
     run = Recording("rig", t, {"phi_rad": phi})
     intervals = intervals_at_rest(run, PENDULUM, DEFAULT)
     assert [round(x) for one in intervals for x in one] == [0, 5, 12, 20]
-    (piece,) = pieces_outside(run, intervals)
+    (piece,) = parts_outside_intervals(run, intervals)
     assert piece.name.startswith("rig (") and 4.5 < piece.t[0] < 5.2 and 11.8 < piece.t[-1] < 12.5
 
 
@@ -147,11 +147,11 @@ def test_a_body_that_follows_a_small_wave_is_not_at_rest(tmp_path: Path) -> None
 def test_pieces_keep_the_name_of_the_whole_and_drop_what_is_too_short() -> None:
     t = np.arange(0.0, 10.0, 0.1)
     run = Recording("rig", t, {"phi_rad": t}, notes=Notes())
-    first, last = pieces_outside(run, [(3.0, 4.0)])
+    first, last = parts_outside_intervals(run, [(3.0, 4.0)])
     assert (first.name, last.name) == ("rig (0 to 2.9 s)", "rig (4.1 to 9.9 s)")
-    (kept,) = pieces_outside(last, [(5.0, 5.5)])  # nine rows in front of it are too few
+    (kept,) = parts_outside_intervals(last, [(5.0, 5.5)])  # nine rows in front of it are too few
     assert kept.name == "rig (5.6 to 9.9 s)"
-    assert pieces_outside(run, []) == [run]
+    assert parts_outside_intervals(run, []) == [run]
 
 
 def test_a_thinned_recording_keeps_all_samples_of_the_torque() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import boatsim
-from boatsim.diagnosis.loading import Request, load
+from boatsim.diagnosis.loading import Request, load_recordings
 from boatsim.diagnosis.log_check import check_files
 from boatsim.recordings.table import write_csv
 from boatsim.simulate import scenario
@@ -39,7 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_diagnosis_fits_the_first_parts_and_holds_the_last_one_out(folder: Path) -> None:
-    loaded = load(Request([folder / "log.csv"]))
+    loaded = load_recordings(Request([folder / "log.csv"]))
     assert [part.name for part in loaded.fitted] == ["log (part 1)"]
     assert [part.name for part in loaded.held_out] == ["log (part 2)"]
     assert "log (part 2)" in loaded.note

@@ -62,7 +62,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     F = expm(A * h)
     F[2, 2] = np.exp(-h / 1.5)
     Q = np.diag([0.0, 0.0, 9.0 * (1 - F[2, 2] ** 2)])
-    P0 = found.initial.covariance.copy()
+    P0 = found.initial_state_prior.covariance.copy()
     P0[0, 0], P0[2, 2] = 1e-6, 9.0
     n = len(rec)
     big = np.zeros((3 * n, 3 * n))
@@ -170,7 +170,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     split = laid.values.copy()
     split[joystick.parameter_index("command_delay", "delay")] = 1e-5
     by_step = []
-    for step in (laid.step, laid.step / 2, 1e-3):
+    for step in (laid.largest_step, laid.largest_step / 2, 1e-3):
         laid = replace(laid, specified_step=step)
         by_step.append(laid.log_likelihood(laid.values, nothing, levels))
         assert laid.log_likelihood(split, delayed, levels) == pytest.approx(by_step[-1], abs=0.02)
@@ -179,7 +179,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
 
 def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
     code, values, on = (
-        joystick.simulation,
+        joystick.simulation_functions,
         joystick.values(),
         joystick.effect_switches(["command_delay"]),
     )
@@ -188,7 +188,7 @@ def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystic
         values[joystick.parameter_index("thrust_lag", "time_constant")],
         values[joystick.parameter_index("rate_limit", "rate")],
     ) = 0.0, 2.0
-    memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
+    memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.actuator_signal_size)
     full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))
     code.settle_actuators(full, memory, values, on, act)  # 0.617 N
     assert code.substep_length(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
@@ -365,12 +365,15 @@ def test_load_and_settings_of_the_notes_belong_to_their_own_vessel(tmp_path):
     (tmp_path / "recording.toml").write_text(
         'vessel = "joystick_boat"\nload = ["light", "narrow"]\n[set.pwm_thrust]\nat_span = 0.3\n'
     )
-    own, same = loading.vessel_for(run, None, ()), loading.vessel_for(run, "joystick_boat", ())
-    other = loading.vessel_for(run, "otter", ())
+    own, same = (
+        loading.vessel_of_recording_file(run, None, ()),
+        loading.vessel_of_recording_file(run, "joystick_boat", ()),
+    )
+    other = loading.vessel_of_recording_file(run, "otter", ())
     assert own.load == same.load == ("light", "narrow")
     assert other.name == "otter" and other.load == ()
     with pytest.raises(BadInput, match="load 'light' does not exist"):
-        loading.vessel_for(run, "otter", ["light"])
+        loading.vessel_of_recording_file(run, "otter", ["light"])
 
 
 def test_the_folder_of_a_run_is_its_recording(tmp_path):
@@ -378,7 +381,7 @@ def test_the_folder_of_a_run_is_its_recording(tmp_path):
     run.rename(tmp_path / "recording.csv")
     (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n')
     assert len(recording.read(tmp_path)) == len(recording.read(tmp_path / "recording.csv"))
-    loaded = loading.load(loading.Request([tmp_path]))
+    loaded = loading.load_recordings(loading.Request([tmp_path]))
     assert loaded.vessel.name == "trial_boat"
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -19,7 +19,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.table import Notes, Recording
 
-PROGRAM = Program(BOAT, library_for(BOAT).compiled)
+PROGRAM = Program(BOAT, candidate_library(BOAT).compiled_effects)
 DRAG = 0.4  # share by which a boat has more drag than its file
 
 

@@ -11,7 +11,7 @@ from answers import diagnosed, named, nothing_missing
 from real_boat import FURTHER, Real, recorded
 from scipy.interpolate import CubicSpline
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, MeasuredMotion
 from boatsim.physics.effects.clock_rate import ClockRate
@@ -39,16 +39,16 @@ def with_gyro(
 
 
 def test_sensor_errors_are_candidates_where_their_columns_were_recorded_and_nowhere_else() -> None:
-    usual = library_for(BOAT)
-    assert library_for(BOAT, (), None, POSES).entries == usual.entries
+    usual = candidate_library(BOAT)
+    assert candidate_library(BOAT, (), None, POSES).entries == usual.entries
     for effect in usual.entries:
         assert not isinstance(effect, SensorError)
-    with_rate = library_for(BOAT, (), None, (*POSES, "r_radps"))
+    with_rate = candidate_library(BOAT, (), None, (*POSES, "r_radps"))
     added = {e.name for e in with_rate.entries} - {e.name for e in usual.entries}
     errors = {"gain", "offset", "drift"}
     assert added == {f"yaw_rate_{e}" for e in errors} | {"heading_delay", "heading_drift"}
     for rate in ("u_mps", "v_mps"):
-        found = {e.name for e in library_for(BOAT, (), None, (*POSES, rate)).entries}
+        found = {e.name for e in candidate_library(BOAT, (), None, (*POSES, rate)).entries}
         word = {"u_mps": "surge", "v_mps": "sway"}[rate]
         assert found - {e.name for e in usual.entries} == {f"{word}_velocity_{e}" for e in errors}
 
@@ -60,9 +60,9 @@ def test_every_special_case_is_a_candidate_of_a_boat_with_all_freedoms_and_all_c
         kind = content.load_class("effect", name)
         if issubclass(kind, SensorError) and kind is not SensorError:
             special[name] = kind
-    assert set(special) <= {e.name for e in library_for(boat, (), None, CHANNELS).entries}
+    assert set(special) <= {e.name for e in candidate_library(boat, (), None, CHANNELS).entries}
     for column in CHANNELS[2:]:
-        library = library_for(boat, (), None, [c for c in CHANNELS if c != column])
+        library = candidate_library(boat, (), None, [c for c in CHANNELS if c != column])
         without = set(special) - {e.name for e in library.entries}
         assert without == {n for n, kind in special.items() if column in kind.needs_columns}
         assert {library.inapplicable[n] for n in without} <= {f"no column {column} was recorded"}
@@ -105,8 +105,10 @@ def with_all_velocities(rate: float) -> list[Recording]:
 
 def test_a_clock_rate_is_a_candidate_where_speed_and_yaw_rate_were_recorded() -> None:
     for columns in (POSES, (*POSES, "u_mps"), (*POSES, "r_radps")):
-        assert "clock_rate" not in {e.name for e in library_for(BOAT, (), None, columns).entries}
-    both = library_for(BOAT, (), None, (*POSES, "u_mps", "r_radps"))
+        assert "clock_rate" not in {
+            e.name for e in candidate_library(BOAT, (), None, columns).entries
+        }
+    both = candidate_library(BOAT, (), None, (*POSES, "u_mps", "r_radps"))
     assert "clock_rate" in {e.name for e in both.entries}
 
 

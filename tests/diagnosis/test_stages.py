@@ -10,7 +10,7 @@ from pushed_boat import BOAT, push, sail
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
@@ -28,23 +28,23 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 
 
 @pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("stages") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 @pytest.fixture(scope="module")
-def question(loaded: Loaded) -> Question:
+def question(loaded: LoadedRecordings) -> Question:
     return replace(set_up_estimation_problem(loaded, FAST), candidates=(ONLY,))
 
 
 @pytest.fixture(scope="module")
 def base(question: Question) -> Baseline:
-    return pipeline.fit(question)
+    return pipeline.fit_baseline_models(question)
 
 
-def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -> None:
+def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: LoadedRecordings) -> None:
     assert [len(part) for part in (loaded.fitted, loaded.held_out)] == [2, 1]
     assert "middle third" in loaded.note
     assert loaded.vessel.name == BOAT.name
@@ -52,13 +52,13 @@ def test_load_holds_out_the_middle_third_of_a_single_recording(loaded: Loaded) -
         loaded.note = ""  # type: ignore[misc]
     path = Path(str(loaded.fitted[0].path))
     with pytest.raises(BadInput, match="given twice"):
-        loading.load(Request([path], [path], vessel=BOAT.name))
+        loading.load_recordings(Request([path], [path], vessel=BOAT.name))
 
 
 def test_check_finds_nothing_wrong_with_a_sound_recording(
-    loaded: Loaded, question: Question
+    loaded: LoadedRecordings, question: Question
 ) -> None:
-    assert not [f for f in pipeline.check(loaded, question) if f.kind == "fault"]
+    assert not [f for f in pipeline.check_recordings(loaded, question) if f.kind == "fault"]
 
 
 def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
@@ -67,18 +67,18 @@ def test_fit_recalibrates_the_vessel(base: Baseline) -> None:
 
 
 def test_later_stages_take_the_results_of_earlier_ones(
-    loaded: Loaded, question: Question, base: Baseline
+    loaded: LoadedRecordings, question: Question, base: Baseline
 ) -> None:
-    selection = pipeline.select(question, base, loaded)
+    selection = pipeline.select_candidates(question, base, loaded)
     assert selection.ranking.recalibrated is base.recalibrated
     assert set(selection.ranking.first) == {ONLY}
-    decision = pipeline.decide(question, selection)
+    decision = pipeline.decide_causes(question, selection)
     assert len(decision.judgements) == len(selection.ranking.named)
-    ranking = replace(pipeline.describe(question, decision), description=None)
+    ranking = replace(pipeline.describe_unexplained_force(question, decision), description=None)
     ranking = pipeline.adopt_refitted_coefficients(question, decision, ranking)
-    evaluation = pipeline.validate(question, decision, ranking)
+    evaluation = pipeline.validate_on_held_out(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
-    plan = pipeline.plan(decision, ranking)
+    plan = pipeline.plan_next_experiment(decision, ranking)
     answer = compose_answer(loaded, question, (), decision, ranking, evaluation, plan, 1.0)
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]

@@ -9,7 +9,7 @@ import pytest
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
-from boatsim.diagnosis.candidates import library_for, program_with_candidates
+from boatsim.diagnosis.candidates import candidate_library, program_with_candidates
 from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
@@ -19,7 +19,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.physics.facts import first_invalid
+from boatsim.physics.facts import first_invalid_fact
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
@@ -129,9 +129,9 @@ def test_wander_is_named_as_such_and_physics_beside_it(
 
 def test_a_camera_does_not_wander() -> None:
     boat = vessel.load_vessel("trial_boat")
-    left_out = library_for(boat, facts={"position_fix": "camera"}).excluded
+    left_out = candidate_library(boat, facts={"position_fix": "camera"}).excluded
     assert left_out["position_wander"] == "position_fix = camera"
-    assert "position_wander" in library_for(boat, facts={"position_fix": "gnss"}).tested
+    assert "position_wander" in candidate_library(boat, facts={"position_fix": "gnss"}).tested_names
 
 
 @pytest.mark.slow
@@ -147,6 +147,9 @@ def test_a_stated_wander_is_known_from_the_start(tmp_path: Path) -> None:
 
 
 def test_a_stated_wander_must_be_complete() -> None:
-    assert first_invalid({"position_wander_sd_m": 0.1}) is not None
-    assert first_invalid({"position_wander_sd_m": 0.1, "position_wander_time_s": -1.0}) is not None
-    assert first_invalid({"position_wander_sd_m": 0.1, "position_wander_time_s": 30.0}) is None
+    assert first_invalid_fact({"position_wander_sd_m": 0.1}) is not None
+    assert (
+        first_invalid_fact({"position_wander_sd_m": 0.1, "position_wander_time_s": -1.0})
+        is not None
+    )
+    assert first_invalid_fact({"position_wander_sd_m": 0.1, "position_wander_time_s": 30.0}) is None

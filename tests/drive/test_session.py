@@ -27,7 +27,7 @@ from boatsim.drive.driver_input import DEAD, PATIENCE, DriverInput, Sticks, appl
 from boatsim.drive.server import ABANDONED, Server
 from boatsim.drive.session import Session
 from boatsim.drive.stick_mapping import stick_mappings_for
-from boatsim.drive.task import Task
+from boatsim.drive.task import DriveTask
 from boatsim.errors import BadInput
 from boatsim.physics.content import shipped_content_names
 from boatsim.recordings.table import Recording, read
@@ -103,7 +103,7 @@ def of_hands() -> list[str]:
     found = []
     for name in shipped_content_names("vessel"):
         try:
-            Task(name)
+            DriveTask(name)
         except BadInput:
             continue
         found.append(name)
@@ -116,7 +116,7 @@ def of_hands() -> list[str]:
 def test_hands_on_the_channels_stay_within_their_ranges_and_leave_them_neutral_in_the_middle(
     name: str, sticks: Sticks
 ) -> None:
-    task = DRIVEN.setdefault(name, Task(name))
+    task = DRIVEN.setdefault(name, DriveTask(name))
     taken = task.vessel.commands
     asked = task.dials.goal_from_sticks(sticks, 0.02, 0.0)
     assert all(
@@ -127,13 +127,13 @@ def test_hands_on_the_channels_stay_within_their_ranges_and_leave_them_neutral_i
     )
 
 
-DRIVEN: dict[str, Task] = {}
+DRIVEN: dict[str, DriveTask] = {}
 
 
 def test_most_vessels_can_be_driven_and_who_is_driven_ahead_goes_ahead() -> None:
     assert len(of_hands()) >= 15
     for name in ("joystick_boat", "otter", "catamaran", "kvlcc2"):
-        task = Task(name)
+        task = DriveTask(name)
         ahead = task.dials.goal_from_sticks(Sticks(surge=1.0), 0.02, 0.0)
         assert all(
             ahead[n] * value > 0.0
@@ -145,7 +145,7 @@ def test_most_vessels_can_be_driven_and_who_is_driven_ahead_goes_ahead() -> None
 def test_the_sticks_of_a_joystick_controller_ask_for_its_three_goals_either_way(
     controller: str,
 ) -> None:
-    task = Task("joystick_boat", controller=controller)
+    task = DriveTask("joystick_boat", controller=controller)
     full = task.dials.goal_from_sticks(Sticks(1.0, 1.0, 1.0), 0.02, 0.0)
     assert set(full) == {"surge_mps", "sway_mps", "yaw_radps"} and all(
         x > 0.0 for x in full.values()
@@ -156,7 +156,7 @@ def test_the_sticks_of_a_joystick_controller_ask_for_its_three_goals_either_way(
 
 
 def test_a_goal_that_is_a_heading_is_turned_from_where_the_boat_points() -> None:
-    task = Task("jet_ski", controller="l1_heading")
+    task = DriveTask("jet_ski", controller="l1_heading")
     assert task.dials.goal_from_sticks(Sticks(), 0.02, 1.5)["psi_rad"] == 1.5
     turned = [task.dials.goal_from_sticks(Sticks(yaw=1.0), 0.02, 9.9)["psi_rad"] for _ in range(50)]
     assert np.all(np.diff(turned) > 0.0)
@@ -165,7 +165,7 @@ def test_a_goal_that_is_a_heading_is_turned_from_where_the_boat_points() -> None
 
 
 def test_a_controller_states_its_largest_goals_and_a_load_of_its_own_changes_nothing() -> None:
-    task = Task("joystick_boat", "berth")
+    task = DriveTask("joystick_boat", "berth")
     made = scenario.load("joystick_boat/berth")
     assert (
         stick_mappings_for(made.vessel, made.controller, "l1_joystick").goal_from_sticks(
@@ -286,7 +286,7 @@ def test_what_goes_wrong_aside_ends_the_run() -> None:
 def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> None:
     tally = tracking_errors.TrackingErrorSums()
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
-        tally.add(rows(begin, end))
+        tally.add_rows(rows(begin, end))
     assert tally.metrics() == pytest.approx(tracking_errors.compute_errors(rows(0, 100)))
 
 
@@ -416,7 +416,7 @@ def test_what_was_driven_can_be_diagnosed(driven: Path, tmp_path: Path) -> None:
 
 
 def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays() -> None:
-    task = Task("joystick_boat", controller="l1_joystick")
+    task = DriveTask("joystick_boat", controller="l1_joystick")
     many = [
         (0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0})
         for i in range(40_000)
@@ -604,7 +604,7 @@ def phone(page: chrome.Page) -> None:
 def test_while_the_boat_is_compiled_the_page_shows_it_and_takes_no_sticks(
     opened, page_server: Server
 ) -> None:
-    session = Session(Task(*JOYSTICK[:1], controller=JOYSTICK[2]), page_server, print)
+    session = Session(DriveTask(*JOYSTICK[:1], controller=JOYSTICK[2]), page_server, print)
     session.show_preparation()
     page = opened(page_server.address)
     page.until("hello && !document.getElementById('ready').hidden")
@@ -627,7 +627,7 @@ def test_while_the_boat_is_compiled_the_page_shows_it_and_takes_no_sticks(
 def test_on_a_phone_water_sticks_and_the_button_are_on_the_first_screen(
     opened, page_server: Server
 ) -> None:
-    session = Session(Task("joystick_boat"), page_server, print)
+    session = Session(DriveTask("joystick_boat"), page_server, print)
     page_server.send_initial_data(session._painter.initial_data(ready=True))
     page = opened(page_server.address)
     phone(page)

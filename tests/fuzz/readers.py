@@ -12,7 +12,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from boatsim.cli.exits import FAULTS, one_line
-from boatsim.diagnosis.loading import vessel_for
+from boatsim.diagnosis.loading import vessel_of_recording_file
 from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.messages import Movement, parse_message
 from boatsim.errors import BadInput
@@ -76,7 +76,7 @@ class Reader:
 
 def _notes(path: Path) -> object:
     run = path.parent / "run.csv"
-    return vessel_for(run, None, []), table.read(run)
+    return vessel_of_recording_file(run, None, []), table.read(run)
 
 
 def _vessel(path: Path) -> object:

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Force, Wrench, motion
+from boatsim.physics.base import Array, Force, Wrench, make_motion
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
@@ -111,7 +111,7 @@ def mmg(s: Array, delta: float) -> Array:
 
 def mmg_wrench(angle: float, shaft: float, **given: float) -> Array:
     """X, Y, N of the three effects together, without the Coriolis force of the added mass."""
-    boat, m = vessel.load_vessel("kvlcc2_mmg"), motion(**given)
+    boat, m = vessel.load_vessel("kvlcc2_mmg"), make_motion(**given)
     hull, propeller, rudder = (
         boat.effect(f"mmg_{part}") for part in ("hull", "propeller", "rudder")
     )
@@ -141,30 +141,30 @@ def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race
         boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull")
     )
     assert propeller is not None and rudder is not None and hull is not None
-    stopped = propeller.wrench(motion(u=1.0), shaft=0.0).X  # type: ignore[attr-defined]
+    stopped = propeller.wrench(make_motion(u=1.0), shaft=0.0).X  # type: ignore[attr-defined]
     assert stopped == pytest.approx(0.78 * RHO * D_P**2 * -0.1385 * 0.6**2, rel=1e-9)
-    assert rudder.wrench(motion(), angle=0.3, shaft=10.0).N > 0.0  # type: ignore[attr-defined]
-    spun = hull.wrench(motion(r=0.2)), hull.wrench(motion(r=0.4))  # type: ignore[attr-defined]
+    assert rudder.wrench(make_motion(), angle=0.3, shaft=10.0).N > 0.0  # type: ignore[attr-defined]
+    spun = hull.wrench(make_motion(r=0.2)), hull.wrench(make_motion(r=0.4))  # type: ignore[attr-defined]
     assert spun[0].N < 0.0 and spun[1].N == pytest.approx(4.0 * spun[0].N)
 
 
 def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
     hull = vessel.load_vessel("kvlcc2_mmg").effect("mmg_hull")
-    ahead, astern = (hull.wrench(motion(u=u)).X for u in (0.8, -0.8))  # type: ignore[union-attr]
+    ahead, astern = (hull.wrench(make_motion(u=u)).X for u in (0.8, -0.8))  # type: ignore[union-attr]
     assert ahead == pytest.approx(-0.5 * RHO * L * D * 0.022 * 0.8**2) and astern == pytest.approx(
         -ahead
     )
-    drifting = [hull.wrench(motion(u=u, v=0.5)).X for u in (-1e-9, 1e-9)]  # type: ignore[union-attr]
+    drifting = [hull.wrench(make_motion(u=u, v=0.5)).X for u in (-1e-9, 1e-9)]  # type: ignore[union-attr]
     assert drifting[0] == pytest.approx(drifting[1], rel=1e-6)  # it turns round without a jump
     still, flowing = (
-        motion(u=-0.5),
-        motion(current=(0.5, 0.0)),
+        make_motion(u=-0.5),
+        make_motion(current=(0.5, 0.0)),
     )  # at rest over ground, the water comes from astern
     assert hull.wrench(flowing).X == hull.wrench(still).X > 0.0  # type: ignore[union-attr]
 
 
 def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straight_astern() -> None:
-    boat, astern = vessel.load_vessel("kvlcc2_mmg"), motion(u=-0.8)
+    boat, astern = vessel.load_vessel("kvlcc2_mmg"), make_motion(u=-0.8)
     stopped = boat.effect("mmg_propeller").wrench(astern, shaft=0.0).X  # type: ignore[union-attr]
     assert stopped == pytest.approx(
         0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2

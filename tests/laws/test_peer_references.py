@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, make_motion
 from boatsim.physics.effects.cross_flow_drag import FRESH_WATER, CrossFlowDrag
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
@@ -224,14 +224,14 @@ def strips(v: float, r: float, centre: float = 0.0) -> tuple[float, float]:
 
 @pytest.mark.parametrize("v", [-0.7, 0.01, 0.3])
 def test_cross_flow_in_pure_sway(v: float) -> None:
-    force = HULL.wrench(motion(v=v))
+    force = HULL.wrench(make_motion(v=v))
     assert force.Y == pytest.approx(-DRAG * 1.2 * v * abs(v), rel=1e-12)
     assert force.N == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("r", [-1.5, 0.02, 0.4])
 def test_cross_flow_in_pure_yaw(r: float) -> None:
-    force = HULL.wrench(motion(r=r))
+    force = HULL.wrench(make_motion(r=r))
     assert force.N == pytest.approx(-DRAG * r * abs(r) * 1.2**4 / 32, rel=1e-12)
     assert force.Y == pytest.approx(0.0, abs=1e-12)
 
@@ -241,13 +241,13 @@ def test_cross_flow_in_pure_yaw(r: float) -> None:
 @pytest.mark.parametrize("r", [-1.0, 0.1, 0.6])
 def test_cross_flow_in_sway_and_yaw_together(v: float, r: float, centre: float) -> None:
     hull = CrossFlowDrag(section_drag_coefficient=0.7, length=1.2, draught=0.06, centre=centre)
-    force = hull.wrench(motion(v=v, r=r))
+    force = hull.wrench(make_motion(v=v, r=r))
     assert (force.Y, force.N) == pytest.approx(strips(v, r, centre), rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
 def test_cross_flow_by_many_stations_comes_to_the_integral(v: float, r: float) -> None:
-    force = replace(HULL, stations=1000.0).wrench(motion(v=v, r=r))
+    force = replace(HULL, stations=1000.0).wrench(make_motion(v=v, r=r))
     # the law bends where the flow turns, inside a station: a few squares of a station's share of
     # the length
     assert (force.Y, force.N) == pytest.approx(strips(v, r), rel=5e-6, abs=1e-12)

@@ -19,7 +19,7 @@ from boatsim.newboat.from_log import fit_boat, fitted_vessel_text
 from boatsim.newboat.particulars import Options, Particulars, parse_particulars
 from boatsim.newboat.write import boat_files
 from boatsim.physics import vessel
-from boatsim.physics.base import motion
+from boatsim.physics.base import make_motion
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
@@ -93,9 +93,9 @@ def test_the_lift_of_a_slender_hull_with_its_munk_moment_is_clarkes_regression()
     told = sway_yaw_damping.lift_derivatives(ship)
     lift = ForwardSpeedDamping(sway=told.sway.value, at=told.at.value, yaw=told.yaw.value)
     of_ship, u, v, r = sway_yaw_damping.clarke_derivatives(ship), 5.0, 0.1, 1e-3
-    drifting = np.add(water.wrench(motion(u=u, v=v)), lift.wrench(motion(u=u, v=v)))
+    drifting = np.add(water.wrench(make_motion(u=u, v=v)), lift.wrench(make_motion(u=u, v=v)))
     assert drifting[[1, 5]] == pytest.approx([-of_ship.sway * u * v, -of_ship.yaw_by_sway * u * v])
-    assert lift.wrench(motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
+    assert lift.wrench(make_motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
 
 
 def test_the_rules_for_a_catamaran_give_what_the_otter_is_said_to_have() -> None:
@@ -173,10 +173,10 @@ def settled(folder: Path, commands: dict[str, float]) -> dict[str, float]:
     """Forces and moment of the drives of a boat at rest, long after their commands."""
     found = vessel.load_vessel(str(folder))
     program = Program(found)
-    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
     values, on = program.values(), program.effect_switches()
     for _ in range(3):
-        program.simulation.advance_actuators(
+        program.simulation_functions.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act
         )
     return dict(zip(found.actuators, act.tolist(), strict=False))
@@ -190,7 +190,7 @@ def test_the_thrust_of_revolutions_grows_with_their_square(tmp_path: Path) -> No
     port = found.effect("port")
     assert port is not None
     for n, force in ((high, 900.0), (0.5 * high, 225.0), (low, -500.0)):
-        wrench = port.wrench(motion(), shaft=n)
+        wrench = port.wrench(make_motion(), shaft=n)
         assert wrench.X == pytest.approx(force, rel=2e-3)
     ahead = found.manoeuvring.ahead["n_port_radps"]
     assert 0.0 < ahead <= np.sqrt(0.5) * high * 1.001
@@ -232,9 +232,9 @@ def test_a_curve_gives_the_thrust_of_its_table_and_commands_for_a_thrust(tmp_pat
         assert act["thrust_port_N"] == pytest.approx(force, abs=1e-6)
     law = DriveLaw(curve=((-100.0, -20.0), (-10.0, 0.0), (10.0, 0.0), (50.0, 15.0), (100.0, 60.0)))
     for force in (-20.0, -3.0, 0.0, 2.0, 15.0, 40.0):
-        back = np.interp(law.command(force, 60.0, 20.0), *np.transpose(law.curve))
+        back = np.interp(law.command_for_thrust(force, 60.0, 20.0), *np.transpose(law.curve))
         assert back == pytest.approx(force, abs=1e-9)
-    assert law.neutral == 0.0
+    assert law.neutral_command == 0.0
     pulses = vessel.load_vessel(str(made(tmp_path / "pulses", BOATS["pulses"])))
     assert pulses.commands["throttle_port"].neutral == 1500.0
 

@@ -23,7 +23,7 @@ from boatsim.metrics.arrival import Arrival
 from boatsim.metrics.speed_reached import SpeedReached
 from boatsim.metrics.turning_radius import TurningRadius
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Wrench, motion
+from boatsim.physics.base import Array, Wrench, make_motion
 from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.added_mass import AddedMassError
 from boatsim.physics.effects.damping import DampingExponent
@@ -322,14 +322,16 @@ def test_turning_radius_of_a_circle() -> None:
 
 
 def test_a_thruster_is_a_force_on_a_lever() -> None:
-    ahead, astern = (Thruster(x=x).wrench(motion(), thrust=20.0, angle=0.3) for x in (0.4, -0.4))
+    ahead, astern = (
+        Thruster(x=x).wrench(make_motion(), thrust=20.0, angle=0.3) for x in (0.4, -0.4)
+    )
     assert ahead == pytest.approx(Wrench(X=20 * cos(0.3), Y=20 * sin(0.3), N=8 * sin(0.3)))
     assert astern == pytest.approx(ahead._replace(N=-ahead.N))
 
 
 def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
     gust = Gust(mean=10.0, amplitude=5.0, frequency=0.4 * pi, toward=2.0, arm=0.1)
-    m = motion(t=1.0, psi=0.7)
+    m = make_motion(t=1.0, psi=0.7)
     force = 10 + 5 * sin(0.4 * pi)
     X, Y = force * cos(2.0 - 0.7), force * sin(2.0 - 0.7)
     assert gust.wrench(m) == pytest.approx(Wrench(X=X, Y=Y, N=0.1 * Y))
@@ -341,7 +343,7 @@ def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
 
 def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
     told = {"mean": 10.0, "amplitude": 5.0, "toward": 2.0}
-    boat, m = vessel.load_vessel("catamaran", settings={"gust": told}), motion(t=1.0, psi=0.7)
+    boat, m = vessel.load_vessel("catamaran", settings={"gust": told}), make_motion(t=1.0, psi=0.7)
     own: Any = boat.effect("gust")
     off: Any = boat.with_completed_effect(GustOffCentre(arm=0.1)).effect("gust")
     Y = own.wrench(m).Y
@@ -350,10 +352,10 @@ def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
 
 def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
     held = SpeedHold(speed=2.0, gain=100.0, mass=7.0)
-    assert held.wrench(motion(u=2.0, v=0.5, r=0.3)).X == pytest.approx(
+    assert held.wrench(make_motion(u=2.0, v=0.5, r=0.3)).X == pytest.approx(
         -7.0 * 0.5 * 0.3
     )  # m(u' - v r) = X: u' = 0
-    assert held.wrench(motion(u=2.1)).X == pytest.approx(-10.0)
+    assert held.wrench(make_motion(u=2.1)).X == pytest.approx(-10.0)
     assert SpeedHold().with_all_parameters(vessel.load_vessel("catamaran")).mass == 7.0
 
 
@@ -375,7 +377,7 @@ def test_payload_and_deeper_draught_make_the_heavier_boat() -> None:
 
 
 def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> None:
-    boat, m = vessel.load_vessel("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
+    boat, m = vessel.load_vessel("catamaran"), make_motion(u=0.5, v=-0.2, r=0.4)
     release = DampingExponent(
         surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0
     )
@@ -383,7 +385,7 @@ def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> N
     assert power.wrench(m) == pytest.approx(
         Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3)
     )
-    assert power.wrench(motion()) == Wrench()
+    assert power.wrench(make_motion()) == Wrench()
 
 
 # What was left out: recordings of boats that differ from the catamaran

@@ -23,7 +23,7 @@ from boatsim.control.adaptive_loop import (
 )
 from boatsim.control.jet import JET_Q2, power_at_throttle, throttle_for_power
 from boatsim.physics import vessel
-from boatsim.physics.base import Force, SignalSegment, Wrench, motion, segment_mean
+from boatsim.physics.base import Force, SignalSegment, Wrench, make_motion, segment_mean
 from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
@@ -54,7 +54,7 @@ MASS, ROLL, YAW = CRAFT.body.mass, CRAFT.body.roll_inertia, CRAFT.body.yaw_inert
 def test_power_curve_has_the_published_corners(throttle: float, wanted: float) -> None:
     jet = WaterJet(mass=1.0)
     for h in (throttle - 1e-9, throttle):  # both sides
-        assert jet.wrench(motion(u=2.0), throttle=h).X * 2.0 == pytest.approx(wanted, abs=1e-6)
+        assert jet.wrench(make_motion(u=2.0), throttle=h).X * 2.0 == pytest.approx(wanted, abs=1e-6)
 
 
 def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back() -> None:
@@ -68,18 +68,21 @@ def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back()
 
 def test_printed_q2_makes_the_power_jump_at_4() -> None:
     jump = [
-        WaterJet(mass=1.0, q2=164.5).wrench(motion(u=1.0), throttle=h).X for h in (4.0 - 1e-9, 4.0)
+        WaterJet(mass=1.0, q2=164.5).wrench(make_motion(u=1.0), throttle=h).X
+        for h in (4.0 - 1e-9, 4.0)
     ]
     assert jump[1] - jump[0] == pytest.approx(9.6, abs=1e-5)
 
 
 def test_thrust_rises_no_more_below_half_a_metre_a_second() -> None:
-    slow = [WaterJet(mass=1.0).wrench(motion(u=u), throttle=1.0).X for u in (-1.0, 0.0, 0.5, 1.0)]
+    slow = [
+        WaterJet(mass=1.0).wrench(make_motion(u=u), throttle=1.0).X for u in (-1.0, 0.0, 0.5, 1.0)
+    ]
     assert slow == pytest.approx([1.6, 1.6, 1.6, 0.8])
 
 
 def test_sway_roll_and_yaw_of_the_craft_are_the_printed_matrix() -> None:
-    jet, m = 0.15, motion(u=20.0, v=-0.7, p=0.3, r=0.5, phi=0.2)
+    jet, m = 0.15, make_motion(u=20.0, v=-0.7, p=0.3, r=0.5, phi=0.2)
     seen = {"angle": jet, "throttle": 3.0, "bucket": 0.0}
     forces = [e for e in CRAFT.effects if isinstance(e, Force)]
     total = np.sum(
@@ -91,10 +94,10 @@ def test_sway_roll_and_yaw_of_the_craft_are_the_printed_matrix() -> None:
 
 def test_roll_coupling_and_jet_are_linear() -> None:
     coupling = RollCoupling(sway_by_roll=2.0, yaw_by_roll=-3.0, roll_by_sway=4.0, roll_by_yaw=5.0)
-    felt = coupling.wrench(motion(v=0.1, p=0.2, r=-0.3))
+    felt = coupling.wrench(make_motion(v=0.1, p=0.2, r=-0.3))
     assert felt == pytest.approx(Wrench(Y=-0.4, K=-0.4 + 1.5, N=0.6))
     jet = JetSteering(sway=-2.0, roll=3.0, yaw=4.0)
-    assert jet.wrench(motion(), angle=-0.1) == pytest.approx(Wrench(Y=0.2, K=-0.3, N=-0.4))
+    assert jet.wrench(make_motion(), angle=-0.1) == pytest.approx(Wrench(Y=0.2, K=-0.3, N=-0.4))
 
 
 def test_first_order_yaw_changes_in_a_straight_line() -> None:
@@ -107,7 +110,7 @@ def test_first_order_yaw_changes_in_a_straight_line() -> None:
         inertia=2.0,
     )
     for t, gain, lag in ((0.0, 1.0, 1.5), (20.0, 2.5, 1.0), (50.0, 4.0, 0.5)):
-        assert law.wrench(motion(t=t, r=0.2), angle=0.1).N == pytest.approx(
+        assert law.wrench(make_motion(t=t, r=0.2), angle=0.1).N == pytest.approx(
             2.0 * (gain * 0.1 - 0.2) / lag
         )
 
@@ -117,7 +120,7 @@ def test_a_push_begins_and_ends() -> None:
         Push(surge=1.0, sway=2.0, yaw=3.0, begin=5.0, end=15.0),
         Wrench(X=1.0, Y=2.0, N=3.0),
     )
-    assert [push.wrench(motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [
+    assert [push.wrench(make_motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [
         Wrench(),
         there,
         there,
@@ -151,7 +154,7 @@ def test_asymmetric_steering_is_even_in_the_angle() -> None:
 def test_kappa_scales_the_whole_surge_acceleration(u: float, kappa: float) -> None:
     lag = CRAFT.effect("planing_lag")
     assert lag is not None
-    m = motion(u=u, v=-0.4, r=0.5)
+    m = make_motion(u=u, v=-0.4, r=0.5)
     others = Wrench(X=1000.0, Y=20.0, K=3.0, N=4.0)
     answer = type(lag).reaction(m, others, lag.values())  # type: ignore[attr-defined]
     before = others.X / MASS + m.v * m.r

@@ -370,7 +370,7 @@ def test_lasting_moment_is_answered_in_full() -> None:
     boat = Turntable(push=0.03, damping=2.8)  # the predictor's own pole: nothing else is unknown
     controller = L1Joystick()
     boat.run(controller, {"sway_mps": 0.07}, 40.0)
-    assert controller.memory_record["N"] == pytest.approx(
+    assert controller.single_memory_record["N"] == pytest.approx(
         -0.03, abs=0.006
     )  # a servo step of 1 deg is 0.006 N m
     assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.03, abs=0.008)

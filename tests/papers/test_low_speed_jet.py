@@ -19,7 +19,7 @@ from boatsim.metrics.crossing import Crossing
 from boatsim.metrics.heading_hold import HeadingHold
 from boatsim.metrics.step_response import StepResponse
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Wrench, motion
+from boatsim.physics.base import Array, Wrench, make_motion
 from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
 from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
@@ -103,7 +103,7 @@ def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or
     beta: float,
 ) -> None:
     own = ReversingJet(thrust=185.0, yaw=275.0)
-    m, seen = motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
+    m, seen = make_motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
     boat = vessel.load_vessel("jet_ski", ["low_speed"])
     leaking: Any = (
         replace(boat, effects=(own,)).with_completed_effect(JetLeak(fraction=0.25)).effects[0]
@@ -166,10 +166,13 @@ def test_hull_in_waves_turns_with_their_yaw_rate(seed: int) -> None:
 
 def test_seed_draws_the_waves_and_still_water_stays_still() -> None:
     sea = YawRateWaves(rms=0.05, inertia=460.0, drag=275.0)
-    first, again, other = (sea.with_seed(n).wrench(motion(t=3.0)).N for n in (1, 1, 2))
+    first, again, other = (sea.with_seed(n).wrench(make_motion(t=3.0)).N for n in (1, 1, 2))
     assert first == again != other
     assert (
-        YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0).with_seed(3).wrench(motion(t=3.0)).N
+        YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0)
+        .with_seed(3)
+        .wrench(make_motion(t=3.0))
+        .N
         == 0.0
     )
 

@@ -19,9 +19,9 @@ from scipy.linalg import expm
 from benchmarks import martin
 from boatsim.control.base import Sense
 from boatsim.control.identification import (
-    Estimator,
     Forgetting,
-    Ship,
+    IdentifiedShip,
+    LeastSquaresEstimator,
     append_rudder_state,
     state_space,
 )
@@ -330,8 +330,8 @@ def samples(n: int, noise: float, seed: int = 0) -> tuple[Array, Array, Array]:
     return theta, x, x @ theta + noise * rng.standard_normal(n)
 
 
-def learnt(law: Forgetting, x: Array, y: Array) -> Estimator:
-    found = Estimator(np.zeros(3), law)
+def learnt(law: Forgetting, x: Array, y: Array) -> LeastSquaresEstimator:
+    found = LeastSquaresEstimator(np.zeros(3), law)
     for row, value in zip(x, y, strict=True):
         found.update(row, value)
     return found
@@ -381,7 +381,9 @@ def test_a_ship_of_the_assumed_form_is_identified_from_her_motion() -> None:
     yaw, roll = (0.7, 0.05, -0.01), (-1.7, 0.9, 0.02, -0.25)
     a, b = state_space(yaw, roll)
     ship, rng, x, u = (
-        Ship(Forgetting(**PLAIN, covariance=1e3), (0.8, 0.03, 0.0), (-1.7, 0.9, 0.01, -0.3)),
+        IdentifiedShip(
+            Forgetting(**PLAIN, covariance=1e3), (0.8, 0.03, 0.0), (-1.7, 0.9, 0.01, -0.3)
+        ),
         np.random.default_rng(1),
         np.zeros(4),
         0.0,

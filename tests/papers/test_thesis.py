@@ -11,7 +11,7 @@ import pytest
 from benchmarks import thesis_models
 from boatsim.control.adaptive import solve_lyapunov
 from boatsim.physics import vessel
-from boatsim.physics.base import Wrench, motion
+from boatsim.physics.base import Wrench, make_motion
 
 ARM = thesis_models.ARM
 SWAY_YAW = thesis_models.SWAY_YAW
@@ -79,9 +79,9 @@ def moment(load: str, spacing: str) -> Callable[[float], float]:
 def inward(boat: Any, port: float, starboard: float, angle: float) -> Wrench:
     """Wrench of both motors at these thrusts [N], turned inward by an angle [deg]."""
     a = radians(angle)
-    one = boat.effect("port").wrench(motion(), thrust=port, angle=a)
+    one = boat.effect("port").wrench(make_motion(), thrust=port, angle=a)
     return Wrench(
-        *np.add(one, boat.effect("starboard").wrench(motion(), thrust=starboard, angle=-a))
+        *np.add(one, boat.effect("starboard").wrench(make_motion(), thrust=starboard, angle=-a))
     )
 
 

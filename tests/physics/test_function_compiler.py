@@ -10,7 +10,7 @@ from numba.core.registry import cpu_target
 from numba.core.typing import Context
 
 from boatsim.physics.debugging import DEBUG
-from boatsim.physics.function_compiler import caching_typing_context, is_plain
+from boatsim.physics.function_compiler import caching_typing_context, is_plain_type
 from boatsim.physics.kernel.compiling import lean, njit_for_compiled_callers
 
 pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
@@ -114,6 +114,6 @@ def test_remembered_types_of_items_are_those_that_numba_infers() -> None:
 
 
 def test_only_types_whose_operators_never_change_are_remembered() -> None:
-    assert is_plain(types.float64) and is_plain(VECTOR) and is_plain(PAIR)
-    assert not is_plain(types.List(types.float64))
-    assert not is_plain(types.Tuple((types.float64, types.unicode_type)))
+    assert is_plain_type(types.float64) and is_plain_type(VECTOR) and is_plain_type(PAIR)
+    assert not is_plain_type(types.List(types.float64))
+    assert not is_plain_type(types.Tuple((types.float64, types.unicode_type)))

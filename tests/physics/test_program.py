@@ -15,7 +15,7 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.physics import content, dependency_hash, vessel
-from boatsim.physics.base import AXES, Array, motion
+from boatsim.physics.base import AXES, Array, make_motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.current import Current
 from boatsim.physics.effects.damping import LinearDamping
@@ -61,7 +61,7 @@ from boatsim.physics.trust import trust_folders
 
 with trust_folders(sys.argv[1]):
     program = Program(vessel.load_vessel(sys.argv[1]))
-act = np.zeros(program.held_size)
+act = np.zeros(program.actuator_signal_size)
 print(program.module.total_body_force(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.effect_switches())[0])
 """
 
@@ -90,7 +90,10 @@ def moment(place: Path, more: Mapping[str, str] | None = None) -> float:
 def forces(program: Program, state: Sequence[float], on: Array | None = None) -> tuple[float, ...]:
     """Body force over the freedoms at a state in joint coordinates and their rates, actuators at
     rest."""
-    act, switches = np.zeros(program.held_size), program.effect_switches() if on is None else on
+    act, switches = (
+        np.zeros(program.actuator_signal_size),
+        program.effect_switches() if on is None else on,
+    )
     return tuple(
         program.module.total_body_force(
             0.0, np.array(state), act, np.int64(0), program.values(), switches
@@ -184,7 +187,7 @@ def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, dof: tuple
     program = Program(vessel.load_vessel(str(boats.written(tmp_path, "test_boat", text))))
     rates = {"surge": 0.3, "sway": -0.2, "yaw": 0.1, "heave": 0.2, "roll": 0.4, "pitch": -0.3}
     moving = {a: rates.get(a, 0.0) if a in dof else 0.0 for a in AXES}
-    m = motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
+    m = make_motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
     wanted = sum(
         np.array(e.wrench(m)) for e in program.effects if isinstance(e, AddedMass | LinearDamping)
     )

@@ -10,13 +10,13 @@ import pytest
 
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.candidates import (
-    base_name,
+    candidate_library,
     has_fittable_parameter,
-    library_for,
+    name_without_prefixes,
     without_excluded_effects,
 )
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.problem import check_uncertainty
+from boatsim.diagnosis.problem import check_uncertain_coefficients
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
@@ -42,12 +42,12 @@ def test_every_vessel_loads_in_every_load(name: str) -> None:
 @pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str) -> None:
     boat = vessel.load_vessel(name)
-    library = library_for(boat)
+    library = candidate_library(boat)
     for entry in library.entries:
         own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.dof)]
         assert own and set(type(entry).needs) <= set(boat.dof)
         vessel.check_bindings(boat.with_completed_effect(entry), name)
-    there = {base_name(e.name) for e in library.entries}
+    there = {name_without_prefixes(e.name) for e in library.entries}
     of_shelf = {
         n
         for n in content.shipped_content_names("effect")
@@ -60,7 +60,7 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
 
 def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
     boat = vessel.load_vessel("trial_boat")
-    everything = set(library_for(boat).tested)
+    everything = set(candidate_library(boat).tested_names)
     facts = {
         "indoors": True,
         "still_water": True,
@@ -68,10 +68,10 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
         "moored": False,
         "position_fix": "gnss",
     }
-    indoors = library_for(boat, (), facts | {"steering_measured": True})
+    indoors = candidate_library(boat, (), facts | {"steering_measured": True})
     ruled_out = {n: why for n, why in indoors.excluded.items() if "--library" not in why}
     assert (
-        everything - set(indoors.tested)
+        everything - set(indoors.tested_names)
         == set(ruled_out)
         == {
             "wind",
@@ -85,15 +85,17 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
     )
     assert (
         indoors.excluded["wind"] == "indoors = true"
-        and indoors.entries == library_for(boat).entries
+        and indoors.entries == candidate_library(boat).entries
     )
-    blind = library_for(boat, (), None, ("t_s", "x_m", "y_m"))
-    assert everything - set(blind.tested) == {"heading_offset", "heading_deviation"}
+    blind = candidate_library(boat, (), None, ("t_s", "x_m", "y_m"))
+    assert everything - set(blind.tested_names) == {"heading_offset", "heading_deviation"}
     reasons = '[diagnosis.leave_out]\ntether = "nothing is tied to it"\n'
     planar = of(boats.PLANAR + reasons, tmp_path)
-    assert library_for(planar).excluded["tether"] == "the vessel's reason: nothing is tied to it"
+    assert (
+        candidate_library(planar).excluded["tether"] == "the vessel's reason: nothing is tied to it"
+    )
     with pytest.raises(BadInput, match="leave_out 'tehter' does not exist; did you mean 'tether'"):
-        library_for(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
+        candidate_library(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
 
 
 def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -> None:
@@ -109,12 +111,15 @@ def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -
 
 def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() -> None:
     boat = vessel.load_vessel("trial_boat")
-    usual = library_for(boat)
+    usual = candidate_library(boat)
     assert (
-        "shallow_water" not in usual.tested
+        "shallow_water" not in usual.tested_names
         and "added_mass_error" in usual.excluded["shallow_water"]
     )
-    assert set(library_for(boat, ["shallow_water"]).tested) == {*usual.tested, "shallow_water"}
+    assert set(candidate_library(boat, ["shallow_water"]).tested_names) == {
+        *usual.tested_names,
+        "shallow_water",
+    }
 
 
 def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
@@ -123,17 +128,19 @@ def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
     boat = of(
         boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path
     )
-    assert priors.used_sample_rate(boat) == priors.used_sample_rate(boat, 36_000.0) == 3.0
+    assert priors.downsampling_rate(boat) == priors.downsampling_rate(boat, 36_000.0) == 3.0
 
 
 def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> (
     None
 ):
     boat = vessel.load_vessel("trial_boat")
-    usual = priors.used_sample_rate(boat)
-    assert priors.used_sample_rate(boat, 300.0) == usual
-    assert 1200.0 * priors.used_sample_rate(boat, 1200.0) == pytest.approx(DEFAULT.load.enough_rows)
-    assert priors.used_sample_rate(boat, 36_000.0) == pytest.approx(
+    usual = priors.downsampling_rate(boat)
+    assert priors.downsampling_rate(boat, 300.0) == usual
+    assert 1200.0 * priors.downsampling_rate(boat, 1200.0) == pytest.approx(
+        DEFAULT.load.enough_rows
+    )
+    assert priors.downsampling_rate(boat, 36_000.0) == pytest.approx(
         DEFAULT.load.least_row_share * usual
     )
 
@@ -141,16 +148,16 @@ def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_th
 @pytest.mark.parametrize("name", content.shipped_content_names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load_vessel(name)
-    check_uncertainty(boat, priors.coefficient_uncertainty(boat), name)
+    check_uncertain_coefficients(boat, priors.coefficient_uncertainty(boat), name)
 
 
 def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:
     boat = of(boats.PLANAR, tmp_path)
-    check_uncertainty(boat, {"damping": 0.1, "thrust": 0.1}, "here")
+    check_uncertain_coefficients(boat, {"damping": 0.1, "thrust": 0.1}, "here")
     for kind, hint in (("restoring", ""), ("thurst", "; did you mean 'thrust'")):
         line = f"here: coefficient_uncertainty.{kind} = 0.1, but test_boat has no coefficient of {kind}{hint}; "
         with pytest.raises(BadInput, match=f"^{line}allowed are added_mass, damping, thrust$"):
-            check_uncertainty(boat, {"damping": 0.1, kind: 0.1}, "here")
+            check_uncertain_coefficients(boat, {"damping": 0.1, kind: 0.1}, "here")
 
 
 @pytest.mark.parametrize("where", ["vessel", "notes"])

@@ -43,7 +43,7 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     assert len(laid.times) == ROWS // 10 + 1 and len(laid.command_times) == ROWS // 2 + 1
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
     there = np.rint(laid.times / (EVERY / 2)).astype(int)
-    laid.program.functions.simulate_intervals(
+    laid.program.estimation_functions.simulate_intervals(
         Inputs(laid.times, laid.command_times, laid.command_values),
         DEFAULT.filter.free_run_step,
         VesselNumbers(rigid_body_values(laid.values), laid.values, laid.program.effect_switches()),

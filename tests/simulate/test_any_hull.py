@@ -45,7 +45,7 @@ def scene(place: Path) -> Scene:
 @pytest.mark.parametrize("geoms", HULLS.values(), ids=HULLS)
 def test_every_hull_has_an_outline_of_its_size(geoms: str, tmp_path: Path) -> None:
     seen = scene(drawn(tmp_path, geoms))
-    ring = seen.outline()
+    ring = seen.hull_outline()
     assert np.ptp(ring[:, 0]) == pytest.approx(1.0, abs=0.01) and np.ptp(
         ring[:, 1]
     ) == pytest.approx(0.4, abs=0.01)

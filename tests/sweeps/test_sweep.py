@@ -530,7 +530,7 @@ def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(
 
 def test_a_folder_that_somebody_is_at_work_in_is_refused(tmp_path: Path) -> None:
     with Journal(tmp_path, {"of": "one"}) as journal:
-        journal.add(3, {"failure": None})
+        journal.append_result(3, {"failure": None})
         with pytest.raises(BadInput, match="another command uses this folder"):
             Journal(tmp_path, {"of": "one"})
     with Journal(tmp_path, {"of": "one"}) as again:
@@ -543,12 +543,12 @@ def test_a_folder_that_somebody_is_at_work_in_is_refused(tmp_path: Path) -> None
 )
 def test_what_is_no_whole_line_of_a_journal_is_written_over(tmp_path: Path, end: bytes) -> None:
     with Journal(tmp_path, {"of": "one"}) as journal:
-        journal.add(3, {"failure": None})
+        journal.append_result(3, {"failure": None})
     with (tmp_path / "journal.jsonl").open("ab") as file:
         file.write(end)
     with Journal(tmp_path, {"of": "one"}) as again:
         assert list(again.done) == [3]
-        again.add(4, {"failure": "why"})
+        again.append_result(4, {"failure": "why"})
     lines = (tmp_path / "journal.jsonl").read_bytes().splitlines()
     assert [json.loads(line).get("run") for line in lines] == [None, 3, 4]
 

@@ -13,7 +13,7 @@ from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import SignalSegment, motion
+from boatsim.physics.base import SignalSegment, make_motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.dragged_propeller import DraggedPropeller
 from boatsim.physics.effects.sway_yaw_coupling import SwayYawCoupling
@@ -102,7 +102,8 @@ def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Pa
     left, right = 30.0, 10.0
     thrusts = {"port": right, "starboard": left}
     wrenches = [
-        e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.effects_of_type("thruster")
+        e.wrench(make_motion(), pushing(e, thrusts[e.name]))
+        for e in boat.effects_of_type("thruster")
     ]
     X, Y, _, _, _, N = np.sum(wrenches, axis=0)
     assert N == pytest.approx(ARM * (right - left))
@@ -127,14 +128,14 @@ def test_a_run_in_the_columns_of_the_lake_is_replayed_right(
 def test_the_munk_moment_is_a_coupling_of_yaw_to_sway() -> None:
     added = AddedMass(surge=1.0, sway=12.0, yaw=0.5)
     at = {"u": 1.3, "v": -0.4, "r": 0.0}
-    munk = added.wrench(motion(**at)).N
-    assert SwayYawCoupling(yaw=12.0 - 1.0).wrench(motion(**at)).N == pytest.approx(munk)
-    assert SwayYawCoupling(yaw=11.0).wrench(motion(u=-1.3, v=-0.4)).N == pytest.approx(-munk)
+    munk = added.wrench(make_motion(**at)).N
+    assert SwayYawCoupling(yaw=12.0 - 1.0).wrench(make_motion(**at)).N == pytest.approx(munk)
+    assert SwayYawCoupling(yaw=11.0).wrench(make_motion(u=-1.3, v=-0.4)).N == pytest.approx(-munk)
 
 
 def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling() -> None:
     u, r = 1.5, 0.6
-    wrench = SwayYawCoupling(sway=-MASS).wrench(motion(u=u, r=r))
+    wrench = SwayYawCoupling(sway=-MASS).wrench(make_motion(u=u, r=r))
     assert wrench.Y == pytest.approx(MASS * u * r)  # centripetal force of a circle at the speed u
     assert wrench.X == wrench.Z == wrench.K == wrench.M == wrench.N == 0.0
 
@@ -148,7 +149,7 @@ def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(
     port = (
         speed + ARM * yawing
     )  # along its axis, of a mount on the port side in a turn to starboard
-    m = motion(u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing)
+    m = make_motion(u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing)
     own, signals = Thruster(y=-ARM), pushing(Thruster(), thrust, a)
     left = (
         thrust if thrust * port > 0.0 else np.sign(thrust) * max(abs(thrust) - drag * port**2, 0.0)
@@ -163,9 +164,9 @@ def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(
 
 def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
     lost, at = DraggedPropeller(drag=4.0), Thruster(x=-0.45, y=-ARM).values()
-    idle, nothing = motion(u=2.0, v=0.1, r=0.3), pytest.approx(np.zeros(6))
+    idle, nothing = make_motion(u=2.0, v=0.1, r=0.3), pytest.approx(np.zeros(6))
     assert lost.wrench(idle, pushing(Thruster(), 0.0), at) == nothing
-    assert lost.wrench(motion(), pushing(Thruster(), 20.0), at) == nothing
+    assert lost.wrench(make_motion(), pushing(Thruster(), 20.0), at) == nothing
 
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:

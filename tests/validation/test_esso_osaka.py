@@ -16,7 +16,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Force, Wrench, motion
+from boatsim.physics.base import Array, Force, Wrench, make_motion
 from boatsim.physics.effects.mmg_low_speed_hull import MmgLowSpeedHull
 from boatsim.physics.effects.mmg_low_speed_propeller import MmgLowSpeedPropeller
 from boatsim.physics.effects.mmg_low_speed_rudder import MmgLowSpeedRudder
@@ -195,7 +195,7 @@ def test_low_speed_laws_are_the_published_formulas_in_every_quadrant(
 ) -> None:
     v, r = np.random.default_rng(seed).uniform(-0.2, 0.2, 2)
     of_hull, of_propeller, of_rudder = effects(SHIP)
-    m = motion(u=u, v=v, r=r)
+    m = make_motion(u=u, v=v, r=r)
     assert planar(of_hull.wrench(m)) == pytest.approx(hull(SHIP, u, v, r), rel=1e-6)
     assert planar(of_propeller.wrench(m, shaft=n)) == pytest.approx(
         propeller(SHIP, u, v, r, n), rel=1e-9
@@ -207,36 +207,38 @@ def test_low_speed_laws_are_the_published_formulas_in_every_quadrant(
 def test_a_hull_that_turns_on_the_spot_is_held_by_its_sections_alone() -> None:
     of_hull, r = effects(SHIP)[0], 0.1
     L, k = SHIP["L"], 0.5 * SHIP["rho"] * SHIP["d"] * SHIP["C_D"]
-    turned = planar(of_hull.wrench(motion(r=r)))
+    turned = planar(of_hull.wrench(make_motion(r=r)))
     assert turned == pytest.approx([0.0, 0.0, -k * SHIP["C_rN"] ** 2 * L**4 / 32 * r**2], abs=1e-9)
-    assert planar(of_hull.wrench(motion(v=0.2))) == pytest.approx(
+    assert planar(of_hull.wrench(make_motion(v=0.2))) == pytest.approx(
         [0.0, -k * L * 0.04, 0.0], abs=1e-9
     )
-    assert not any(of_hull.wrench(motion()))
+    assert not any(of_hull.wrench(make_motion()))
 
 
 def test_resistance_astern_is_its_own() -> None:
-    ahead, astern = (effects(SHIP)[0].wrench(motion(u=u)).X for u in (0.3, -0.3))
+    ahead, astern = (effects(SHIP)[0].wrench(make_motion(u=u)).X for u in (0.3, -0.3))
     assert astern / -ahead == pytest.approx(SHIP["X_0A"] / SHIP["X_0F"])
 
 
 def test_a_shaft_that_stands_still_or_turns_ahead_on_a_ship_ahead_pushes_nothing_aside() -> None:
     of_propeller = effects(SHIP)[1]
-    assert not any(of_propeller.wrench(motion(), shaft=0.0))
-    assert of_propeller.wrench(motion(u=0.3), shaft=10.0).Y == 0.0
+    assert not any(of_propeller.wrench(make_motion(), shaft=0.0))
+    assert of_propeller.wrench(make_motion(u=0.3), shaft=10.0).Y == 0.0
     assert (
-        of_propeller.wrench(motion(u=0.3), shaft=0.0).X
+        of_propeller.wrench(make_motion(u=0.3), shaft=0.0).X
         < 0.0
-        < of_propeller.wrench(motion(u=-0.3), shaft=0.0).X
+        < of_propeller.wrench(make_motion(u=-0.3), shaft=0.0).X
     )
-    assert of_propeller.wrench(motion(), shaft=-10.0).Y != 0.0
+    assert of_propeller.wrench(make_motion(), shaft=-10.0).Y != 0.0
 
 
 def test_the_blade_of_a_ship_that_drifts_astern_leads_and_steers_the_other_way() -> None:
     of_rudder = effects(SHIP)[2]
-    ahead, astern = (of_rudder.wrench(motion(u=u), angle=0.3, shaft=-1e-9).N for u in (0.3, -0.3))
+    ahead, astern = (
+        of_rudder.wrench(make_motion(u=u), angle=0.3, shaft=-1e-9).N for u in (0.3, -0.3)
+    )
     assert ahead > 0.0 > astern
-    assert of_rudder.wrench(motion(), angle=0.3, shaft=10.0).N > 0.0  # at rest, in the race
+    assert of_rudder.wrench(make_motion(), angle=0.3, shaft=10.0).N > 0.0  # at rest, in the race
 
 
 # ---- the vessel, from numbers that are not part of the project
@@ -317,7 +319,7 @@ def test_the_vessels_forces_are_those_of_the_captive_tests(
 ) -> None:
     c, v, r = published, 0.06, -0.03
     parts = [ship.effect(f"mmg_low_speed_{part}") for part in ("hull", "propeller", "rudder")]
-    m = motion(u=u, v=v, r=r)
+    m = make_motion(u=u, v=v, r=r)
     k = 0.5 * c["rho"] * c["L"] ** 2 * c["d"]
     added = np.array([c["m_y"] * k * v * r, -c["m_x"] * k * u * r, 0.0])
     found = [

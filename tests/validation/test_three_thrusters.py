@@ -146,12 +146,12 @@ def test_forces_and_moments_are_those_of_statics(tmp_path: Path, seed: int) -> N
     )
     boat = vessel.load_vessel(str(boats.written(tmp_path, "workboat", text)))
     program, (row,) = Program(boat), drawn(boat, 1, seed)
-    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-    program.functions.settle_actuators(
+    act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
+    program.estimation_functions.settle_actuators(
         row, memory, program.values(), program.effect_switches(), act
     )
     at_rest = np.zeros(12)
-    force = program.functions.total_body_force(
+    force = program.estimation_functions.total_body_force(
         0.0, at_rest, act, np.int64(0), program.values(), program.effect_switches()
     )
     assert force == pytest.approx(statics(dict(zip(COMMANDS, row, strict=True))), abs=1e-12)

@@ -217,7 +217,7 @@ def test_a_boat_of_which_few_places_are_known_has_a_path_through_them(tmp_path):
 
 
 def test_the_outline_is_that_of_the_hull_from_above():
-    ring = SCENE.outline()
+    ring = SCENE.hull_outline()
     np.testing.assert_array_equal(ring[0], ring[-1])
     x, y = ring.T
     assert 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(y[:-1], x[1:])) == pytest.approx(

@@ -67,7 +67,7 @@ def thinned(log: Recording, cuts: list[int]) -> Samples:
     made = ThinnedLog()
     for first, end in zip([0, *cuts], [*cuts, len(log)], strict=True):
         signals = {name: values[first:end] for name, values in log.signals.items()}
-        made.add(replace(log, t=log.t[first:end], signals=signals))
+        made.add_rows(replace(log, t=log.t[first:end], signals=signals))
     found = made.samples()
     assert found is not None
     return found
@@ -90,14 +90,14 @@ def test_a_log_of_any_length_keeps_its_extremes_in_a_bounded_number_of_samples(
 
 def test_a_short_log_is_drawn_as_it_is() -> None:
     values = np.sin(np.arange(500.0))
-    t, drawn = thinned(log_of(values), [7, 200]).curve("u_mps")
+    t, drawn = thinned(log_of(values), [7, 200]).thinned_curve("u_mps")
     assert len(t) == 500 and np.array_equal(drawn, values)
 
 
 def test_a_fast_oscillation_keeps_its_amplitude_in_a_long_log() -> None:
     rows = 400_000  # 200 oscillations fall into a bucket
     found = thinned(log_of(np.sin(np.arange(rows) * np.pi / 2.0)), [])
-    _, drawn = found.curve("u_mps")
+    _, drawn = found.thinned_curve("u_mps")
     assert np.ptp(drawn[:-2].reshape(-1, 2), axis=1).min() == pytest.approx(2.0)
 
 

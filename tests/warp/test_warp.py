@@ -13,7 +13,7 @@ pytest.importorskip("warp")
 pytest.importorskip("mujoco_warp")
 
 from benchmarks import gpu
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -115,7 +115,7 @@ def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
         [[6.0 + 0.6, 0, 0], [0, 6.0 + 3.0, 3.0 * 0.2], [0, 3.0 * 0.2, 0.5 + 0.3 + 3.0 * 0.2**2]]
     )
     ahead, aside, turning = np.linalg.solve(M, force)
-    batch.send()
+    batch.copy_inputs_to_device()
     assert isinstance(batch.motion, MujocoMotion)
     for psi, found in zip(headings, batch.motion.accelerations(), strict=True):
         turned = (
@@ -130,7 +130,7 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     """All that a diagnosis may find on a boat, described laws with it: to rounding in double
     precision."""
     boat, n, rng = vessel.load_vessel("joystick_boat"), 200, np.random.default_rng(3)
-    program = Program(boat, library_for(boat).compiled)
+    program = Program(boat, candidate_library(boat).compiled_effects)
     code, own = program.module, len(boat.effects)
     values = np.tile(program.values(), (n, 1))
     for effect, first in zip(program.effects[own:], program.offsets[own:], strict=True):
@@ -139,11 +139,14 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
                 values[:, first + j] += rng.uniform(0.0, 0.1, n) * min(1.0, about.high)
     on = (rng.uniform(size=(n, len(program.effects))) < 0.5).astype(float)
     on[:, :own] = 1.0
-    s, act = rng.uniform(-0.5, 0.5, (n, 6)), rng.uniform(-1.0, 1.0, (n, program.held_size))
+    s, act = (
+        rng.uniform(-0.5, 0.5, (n, 6)),
+        rng.uniform(-1.0, 1.0, (n, program.actuator_signal_size)),
+    )
     t, commands = rng.uniform(0.0, 10.0, n), drawn_commands(boat, (n,))
     memory, moved, pauses = (
         np.zeros((n, program.memory_size)),
-        np.zeros((n, program.held_size)),
+        np.zeros((n, program.actuator_signal_size)),
         np.zeros(n),
     )
 

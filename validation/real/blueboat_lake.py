@@ -119,7 +119,7 @@ def leave_one_out(diagnosis: Diagnosis, runs: dict[str, Path]) -> list[Fold]:
     """
     opened = [loading.open_recording(path, VESSEL, ())[0] for path in runs.values()]
     vessel, program = diagnosis.vessel, diagnosis.problem.program
-    noise, rate = shared_noise(vessel, opened), priors.used_sample_rate(vessel)
+    noise, rate = shared_noise(vessel, opened), priors.downsampling_rate(vessel)
     mapped = [map_recording(run.thinned(rate), program, noise) for run in opened]
     whole = dict(zip(names_of(mapped), opened, strict=True))
     # the correlation time of this fit would use the held-out runs

@@ -26,7 +26,7 @@ def accept_corrections(files: Sequence[Path], vessel: str) -> list[str]:
     Returns:
         One line for each kind of finding with a correction: its name and runs.
     """
-    loaded = loading.load(loading.Request(files, vessel=vessel))
+    loaded = loading.load_recordings(loading.Request(files, vessel=vessel))
     by_run: dict[str, list[str]] = {}
     offered: dict[str, list[str]] = {}
     for finding in loaded.findings:

@@ -28,7 +28,7 @@ from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import MappedRecording, free_run_segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array
@@ -246,7 +246,7 @@ class Weather:
         names = ship.effects
         if "wind" not in names:
             names = (*names, "wind")
-        free = problem.parameters(names)
+        free = problem.free_parameters(names)
         theta = free_parameter_values(free, ship.values())
         self.rest = []  # positions of all parameters but those of the wind
         for i, f in enumerate(free):
@@ -434,8 +434,8 @@ def open_runs(
     Returns:
         Runs by name, and the vessel.
     """
-    vessel = loading.vessel_for(next(iter(runs.values())), vessel_name, ())
-    rate = priors.used_sample_rate(vessel)
+    vessel = loading.vessel_of_recording_file(next(iter(runs.values())), vessel_name, ())
+    rate = priors.downsampling_rate(vessel)
     found = {}
     for name, path in runs.items():
         recording = completed(name, loading.open_recording(path, vessel_name, ())[0])
@@ -455,7 +455,9 @@ def diagnose(runs: Mapping[str, OpenedRun], vessel: Vessel) -> Diagnosis:
     vessels = dict.fromkeys(map(attrgetter("path"), (*fitted, *held_out)), vessel)
     note = f"{', '.join(HELD_OUT)}; of the other runs only the longest stretch without a jump, "
     note += f"{WINDOW:g} s at most"
-    return pipeline.diagnose_loaded(Loaded(fitted, held_out, vessels, note, horizon=HORIZON))
+    return pipeline.diagnose_loaded(
+        LoadedRecordings(fitted, held_out, vessels, note, horizon=HORIZON)
+    )
 
 
 def mapper_of(diagnosis: Diagnosis, runs: Mapping[str, OpenedRun]) -> Mapper:

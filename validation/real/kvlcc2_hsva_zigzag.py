@@ -102,7 +102,7 @@ def main() -> None:
     write_report(diagnosis, NAME)
     print_held_out(diagnosis)
     print_couplings(diagnosis)
-    rate = priors.used_sample_rate(diagnosis.vessel)
+    rate = priors.downsampling_rate(diagnosis.vessel)
     recordings = []
     for path in runs.values():
         recording = loading.open_recording(path, None, ())[0]

@@ -67,7 +67,7 @@ def main() -> None:
     diagnosis = pipeline.diagnose(runs_named(runs, FITTED), [runs[HELD_OUT]], horizon=HORIZON)
     write_report(diagnosis, NAME)
     recording, vessel = loading.open_recording(runs[HELD_OUT], None, ())
-    circle = diagnosis.map_recording(recording.thinned(priors.used_sample_rate(vessel)))
+    circle = diagnosis.map_recording(recording.thinned(priors.downsampling_rate(vessel)))
     print_circle(diagnosis, circle, GOALS, f"goal (and <= {SHARE})")
     speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
     rms = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))

@@ -20,8 +20,8 @@ from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, converge, gauss_newton
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import Loaded
-from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
+from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_latent_force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.errors import BadInput, unknown_name_message
@@ -165,7 +165,7 @@ def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:
     for name, path in runs.items():
         run, vessel = loading.open_recording(path, vessel_name, ())
         thin = drop_position_outliers(
-            run.thinned(min(RATE, priors.used_sample_rate(vessel))), vessel
+            run.thinned(min(RATE, priors.downsampling_rate(vessel))), vessel
         )
         notes = replace(thin.notes, facts={**FACTS, **thin.notes.facts})
         opened[name] = replace(thin, name=name, notes=notes)
@@ -179,11 +179,11 @@ def diagnose(
     vessels: dict[Path | None, Vessel] = {}
     for run in runs.values():
         if run.path:
-            vessels[run.path] = loading.vessel_for(run.path, vessel_name, ())
+            vessels[run.path] = loading.vessel_of_recording_file(run.path, vessel_name, ())
     kept = runs_named(runs, held_out)
     note = ", ".join(held_out)
     fitted = runs_except(runs, held_out)
-    return pipeline.diagnose_loaded(Loaded(fitted, kept, vessels, note, horizon=horizon))
+    return pipeline.diagnose_loaded(LoadedRecordings(fitted, kept, vessels, note, horizon=horizon))
 
 
 # ---- the two tanks
@@ -194,7 +194,7 @@ def log_likelihood(problem: Problem, found: Fit) -> float:
     refitted = fit_latent_force_level(problem, found)
     on = problem.program.effect_switches(refitted.effects)
     likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
-    return likelihood + log_force_prior(problem, refitted.levels)
+    return likelihood + log_latent_force_prior(problem, refitted.levels)
 
 
 def print_error_sources(

@@ -20,11 +20,11 @@ from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain
-from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.diagnosis.search.screening import screen
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -55,7 +55,7 @@ Table = tuple[str, list[str], Rows]
 def open_release(name: str) -> tuple[Recording, Vessel]:
     """Return a release at the rate of a diagnosis, and its vessel."""
     recording, vessel = loading.open_recording(DATA / f"{name}.csv", None, ())
-    return replace(recording.thinned(priors.used_sample_rate(vessel)), name=name), vessel
+    return replace(recording.thinned(priors.downsampling_rate(vessel)), name=name), vessel
 
 
 def split_at(whole: Recording, edges: Sequence[float]) -> list[Recording]:
@@ -80,7 +80,7 @@ def diagnose_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     parts = windows_of(whole)
     note = f"every second window of {WINDOW:g} s"
     return pipeline.diagnose_loaded(
-        Loaded(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
+        LoadedRecordings(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
     )
 
 
@@ -89,7 +89,7 @@ def diagnose_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diag
     parts = thirds_of(whole)
     kept = parts.pop(held_out)
     return pipeline.diagnose_loaded(
-        Loaded(parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON)
+        LoadedRecordings(parts, [kept], {whole.path: vessel}, kept.name, horizon=HORIZON)
     )
 
 
@@ -303,7 +303,7 @@ def last_third_rows(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranki
     (tail,) = map_all(diagnosis, thirds_of(whole)[2:])
     problem = diagnosis.problem
     alone = Problem([tail], problem.ambient, problem.uncertainty)
-    ranking = rank(alone, problem.program.candidate_names)
+    ranking = select_and_rank_candidates(alone, problem.program.candidate_names)
     fits = dict(compared_fits(diagnosis.ranking))
     fits["linear, fitted here"] = ranking.recalibrated
     gains = {}

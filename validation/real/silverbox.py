@@ -29,7 +29,7 @@ from scipy.signal import resample_poly
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.filter import MappedRecording, map_recording
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -207,7 +207,9 @@ def diagnose(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Diagnose the linear oscillator from stretches of the training data."""
     fitted = list(starmap(partial(slice_rows, whole), FITTED))
     held_out = slice_rows(whole, *HELD_OUT)
-    return pipeline.diagnose_loaded(Loaded(fitted, [held_out], {whole.path: vessel}, held_out.name))
+    return pipeline.diagnose_loaded(
+        LoadedRecordings(fitted, [held_out], {whole.path: vessel}, held_out.name)
+    )
 
 
 # ---- judgement

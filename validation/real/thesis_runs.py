@@ -186,10 +186,10 @@ class ThesisTest:
     def _replay(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
         """Return times (N,) and states (N, 6) in earth axes of a run with given commands."""
         program, step = self.program, self.scenario.file.step
-        code, on = program.simulation, program.effect_switches()
+        code, on = program.simulation_functions, program.effect_switches()
         memory, out = np.zeros(program.memory_size), np.zeros((len(commands) + 1, 6))
         start = program.command_array(self.scenario.controller.initial_commands())
-        code.settle_actuators(start, memory, p, on, np.zeros(program.held_size))
+        code.settle_actuators(start, memory, p, on, np.zeros(program.actuator_signal_size))
         plant = program.vessel_state(np.zeros(6), memory)
         code.rollout(VesselNumbers(body, p, on), plant, commands, 0.0, step, 1, out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
@@ -205,11 +205,11 @@ class ThesisTest:
         controller, sensors, code = (
             self.scenario.controller,
             self.scenario.sensors,
-            program.simulation,
+            program.simulation_functions,
         )
         controller.reset()
         period = round(controller.period / file.step)
-        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
         on = program.effect_switches()
         code.settle_actuators(
             program.command_array(controller.initial_commands()), memory, p, on, act

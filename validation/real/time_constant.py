@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, priors
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.correlation_time import (
     cross_validated_correlation_time,
@@ -38,8 +38,8 @@ def problem_of(paths: list[Path], vessel_name: str | None) -> Problem:
     """Return the estimation problem of a diagnosis of some recordings."""
     opened = [loading.open_recording(path, vessel_name, ()) for path in paths]
     first, vessel = opened[0]
-    program = Program(vessel, library_for(vessel).compiled)
-    noise, rate = shared_noise(vessel, [first]), priors.used_sample_rate(vessel)
+    program = Program(vessel, candidate_library(vessel).compiled_effects)
+    noise, rate = shared_noise(vessel, [first]), priors.downsampling_rate(vessel)
     recordings = [map_recording(run.thinned(rate), program, noise) for run, _ in opened]
     uncertainty = priors.coefficient_uncertainty(vessel) | first.notes.coefficient_uncertainty
     return Problem(recordings, prior_noise_levels(vessel, [first]), uncertainty)

@@ -44,7 +44,10 @@ class Smoother:
         wide, narrow = dict[str, int](), dict[str, int]()
         for j, family in enumerate(families):
             n = narrowest_quiet_window(
-                track, ambient.force[j] / track.inertia[j], ambient.time_constant, noise[family]
+                track,
+                ambient.force[j] / track.inertia_with_added_mass[j],
+                ambient.time_constant,
+                noise[family],
             )
             wide[family] = max(n, wide.get(family, n))
             n = widest_unbiased_window(recorded[:, j], noise[family])
@@ -94,7 +97,7 @@ class Smoother:
 
         Along x and y it is the mean over all headings.
         """
-        power = (times * ambient.force / self.track.inertia) ** 2
+        power = (times * ambient.force / self.track.inertia_with_added_mass) ** 2
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
         power[level] = np.mean(power[level]) if level else 0.0
         return power * np.array(
@@ -192,7 +195,7 @@ def true_positions(track: MappedRecording, recorded: Array, values: Array, on: A
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
     for row, t in zip(out, track.times - track.times[0], strict=True):
-        track.program.functions.remove_position_errors(row, t, values, on)
+        track.program.estimation_functions.remove_position_errors(row, t, values, on)
     return out[:, :nq].copy()
 
 
@@ -207,7 +210,7 @@ def predicted_accelerations(
     track: MappedRecording, states: Array, held: Array, values: Array, on: Array
 ) -> Array:
     """Return joint accelerations (N, NQ) at states (N, 2 NQ) and actuators (N, HELD)."""
-    code = track.program.simulation
+    code = track.program.simulation_functions
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
     code.compute_mass_constants(rigid_body_values(values), values, on, k)
     after, acts = states.copy(), np.hstack([held, held, held])

@@ -10,9 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
+from boatsim.diagnosis.search.screening import (
+    add_effect,
+    starting_points,
+    transfer_coefficient_change,
+)
 from boatsim.physics.base import Array
 from validation.rivals.evidence import Judge, rms_by_channel
 from validation.rivals.linear import LinearisedErrors, bounded_least_squares_step, iterate_steps
@@ -96,12 +100,12 @@ class LeastSquares:
 
     def add_best_effect(self, best: State) -> State | None:
         """Return the set with the best further effect, or None if BIC would rise."""
-        there = {base_name(n) for n in best.effects}
+        there = {name_without_prefixes(n) for n in best.effects}
         base = self.linearise(best)
         screened = [
             self.screen_entry(best, base, n)
             for n in self.question.entries
-            if base_name(n) not in there
+            if name_without_prefixes(n) not in there
         ]
         rows = float(sum(np.isfinite(e).sum() for e in best.errors))
         screened = sorted(
@@ -270,7 +274,7 @@ class LeastSquares:
         effects, found = (*best.effects, entry), list[State]()
         begun_at = as_diagnosis_fit(self.question, best.effects, best.theta, np.zeros((0, 0)))
         for start in starting_points(self.problem, self.question.entries[entry]):
-            fit = hand_over_coefficient(
+            fit = transfer_coefficient_change(
                 add_effect(self.problem, begun_at, entry, start), self.question.entries[entry]
             )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])

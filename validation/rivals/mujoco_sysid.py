@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.problem import Fit, FreeParameter
 from boatsim.physics.base import Array
@@ -88,13 +88,13 @@ class MujocoSysid:
         """
         found: dict[str, str] = {}
         for name in self.question.entries:
-            if base_name(name) in found:
+            if name_without_prefixes(name) in found:
                 continue
             small = self.changes(name, nominal, SMALL_STEP)
             whole = self.changes(name, nominal, 1.0)
             self.acting |= {key for key, change in whole.items() if change > 0.0}
             if all(small[key] <= ABRUPT * whole[key] for key in whole):
-                found[base_name(name)] = name
+                found[name_without_prefixes(name)] = name
         return tuple(found.values())
 
     def changes(self, name: str, nominal: Estimate, share: float) -> dict[tuple[str, str], float]:

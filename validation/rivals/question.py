@@ -12,7 +12,7 @@ import numpy as np
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import wrap
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.candidates import base_name, library_for
+from boatsim.diagnosis.candidates import candidate_library, name_without_prefixes
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels, shared_noise
@@ -41,7 +41,7 @@ class Question:
 
     def start(self) -> Array:
         """Return the nominal coefficients."""
-        return np.array([f.mean for f in self.problem.parameters(())])
+        return np.array([f.mean for f in self.problem.free_parameters(())])
 
 
 def read_question(trial: Path) -> Question:
@@ -54,18 +54,18 @@ def read_question(trial: Path) -> Question:
     runs = []
     for r, b in opened:
         runs.append(
-            drop_position_outliers(drop_repeated_values(r.thinned(priors.used_sample_rate(b))), b)
+            drop_position_outliers(drop_repeated_values(r.thinned(priors.downsampling_rate(b))), b)
         )
     columns = sorted({c for r in runs for c in r.signals})
-    library = library_for(vessel, (), runs[0].notes.facts, columns)
-    program = Program(vessel, library.compiled)
+    library = candidate_library(vessel, (), runs[0].notes.facts, columns)
+    program = Program(vessel, library.compiled_effects)
     stated = shared_noise(vessel, runs)
     tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.coefficient_uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, prior_noise_levels(vessel, runs), uncertainty)
     entries = {}
     for e in library.entries:
-        if e.name in library.tested and not type(e).random:
+        if e.name in library.tested_names and not type(e).random:
             entries[e.name] = e
     families = {f for t in tracks for f in t.families}
     noise = {f: priors.estimate_sensor_noise(vessel, runs, f) or stated[f] for f in families}
@@ -75,7 +75,7 @@ def read_question(trial: Path) -> Question:
 def free_parameters(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
     """Return the free parameters: the nominal coefficients, then those of the effects."""
     if effects not in question.known:
-        question.known[effects] = question.problem.parameters(effects)
+        question.known[effects] = question.problem.free_parameters(effects)
     return question.known[effects]
 
 
@@ -100,7 +100,7 @@ def write_answer(
     said: dict[str, Any] = {
         "effects": [
             {
-                "name": base_name(n),
+                "name": name_without_prefixes(n),
                 "parameters": parameter_entries(question, found, n),
                 "gain_nats": round(gains[n], 2),
             }

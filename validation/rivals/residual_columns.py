@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import FreeParameter
 from boatsim.diagnosis.search.screening import starting_points
 from boatsim.physics.base import Array, Measurement
@@ -66,7 +66,7 @@ class ResidualColumns:
         for name, effect in self.question.entries.items():
             late = isinstance(effect, Measurement) and type(effect).motion_latency is not None
             if not late:
-                found.setdefault(base_name(name), name)
+                found.setdefault(name_without_prefixes(name), name)
         return list(found.values())
 
     def motions(self, effects: tuple[str, ...], theta: Array) -> list[Motion]:

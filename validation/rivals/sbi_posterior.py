@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import Fit, FreeParameter
 from boatsim.physics.base import Array
 from validation.rivals.packages import import_package
@@ -66,7 +66,9 @@ class SbiPosterior:
         self.simulator = Simulator(question)
         self.candidates: list[str] = []
         for name in question.entries:
-            if base_name(name) not in {base_name(n) for n in self.candidates}:
+            if name_without_prefixes(name) not in {
+                name_without_prefixes(n) for n in self.candidates
+            }:
                 self.candidates.append(name)
         self.rng = np.random.default_rng(SEED)
         self.torch.set_num_threads(1)

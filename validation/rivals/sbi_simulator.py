@@ -109,7 +109,7 @@ class Simulator:
         """Return the response (S, N NQ) of the averages to ambient forces of one sd in a row."""
         track, nq = run.track, run.track.program.module.NQ
         h = float(np.median(np.diff(track.times)))
-        kicks = self.problem.ambient.force * h / track.inertia  # (NQ,) body rates
+        kicks = self.problem.ambient.force * h / track.inertia_with_added_mass  # (NQ,) body rates
         begins = np.concatenate(
             [np.arange(a, b) for a, b in zip(run.begins, run.ends, strict=True)]
         )
@@ -139,9 +139,9 @@ def simulate(run: Windows, begins: Array, ends: Array, states: Array) -> Array:
     track, program = run.track, run.track.program
     out = np.full((len(begins), len(track.times), states.shape[1]), np.nan)
     values = track.values.copy()
-    program.functions.simulate_intervals(
+    program.estimation_functions.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
-        track.step,
+        track.largest_step,
         VesselNumbers(rigid_body_values(values), values, program.effect_switches(())),
         np.ascontiguousarray(begins),
         np.ascontiguousarray(ends),

@@ -13,9 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import Fit, FreeParameter
-from boatsim.diagnosis.search.screening import add_effect, hand_over_coefficient, starting_points
+from boatsim.diagnosis.search.screening import (
+    add_effect,
+    starting_points,
+    transfer_coefficient_change,
+)
 from boatsim.physics.base import Array, Force, Measurement
 from validation.rivals.accelerations import (
     Smoother,
@@ -201,7 +205,9 @@ class SparseRegression:
         """Fit an effect alone and return its columns; None if it diverges or changes nothing."""
         base = as_diagnosis_fit(self.question, (), nominal.theta, np.zeros((0, 0)))
         begun = [
-            hand_over_coefficient(add_effect(self.problem, base, entry, s), self.entries[entry])
+            transfer_coefficient_change(
+                add_effect(self.problem, base, entry, s), self.entries[entry]
+            )
             for s in starting_points(self.problem, self.entries[entry])
         ]
         free = free_parameters(self.question, (entry,))
@@ -250,7 +256,7 @@ class SparseRegression:
             return float(b[at] @ np.linalg.solve(G[np.ix_(at, at)], b[at]))
 
         while kept:
-            if len(kept) <= MOST and len({base_name(n) for n in kept}) == len(kept):
+            if len(kept) <= MOST and len({name_without_prefixes(n) for n in kept}) == len(kept):
                 found.append(tuple(kept))
             worth = {n: explained([m for m in kept if m != n]) for n in kept}
             dispensable = max(worth, key=lambda n: worth[n])

@@ -50,9 +50,9 @@ class Windows:
         """Return recorded minus simulated, (M, C) for each window, nan for missing values."""
         track, program = self.track, self.track.program
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
-        program.functions.simulate_intervals(
+        program.estimation_functions.simulate_intervals(
             Inputs(track.times, track.command_times, track.command_values),
-            track.step,
+            track.largest_step,
             VesselNumbers(rigid_body_values(values), values, on),
             self.begins,
             self.ends,

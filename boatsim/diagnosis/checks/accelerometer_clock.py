@@ -111,7 +111,7 @@ def pose_clock_error(
     middle = 0.5 * float(t[0] + t[-1])
     longest = config.pose_clock_max_delay * froude_time_scale(vessel)
 
-    def correlation(delay: float, rate: float) -> float:
+    def correlation_at_delay(delay: float, rate: float) -> float:
         stamps = t + delay + rate * (t - middle)
         inside = (stamps >= t[0]) & (stamps <= t[-1])
         if inside.sum() < config.pose_clock_min_rows:
@@ -121,9 +121,9 @@ def pose_clock_error(
             found.append(_correlation(pair.pose(stamps[inside]), pair.witness[inside]))
         return float(np.mean(found))
 
-    recorded = correlation(0.0, 0.0)
-    best = _best_clock(correlation, longest, config)
-    found = correlation(*best)
+    recorded = correlation_at_delay(0.0, 0.0)
+    best = _best_clock(correlation_at_delay, longest, config)
+    found = correlation_at_delay(*best)
     unexplained = (1.0 - found) / max(1.0 - recorded, 1e-12)
     if found < config.pose_clock_min_correlation or unexplained > config.pose_clock_max_unexplained:
         return None

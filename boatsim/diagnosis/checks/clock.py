@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_part
+from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_uninterrupted_interval
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
@@ -62,7 +62,7 @@ def _jump_finding(
         f"the time jumps ahead at {places}, but the boat does not move in these intervals",
         probability=config.probability_strong,
         spans=tuple(zip(t[listed].tolist(), t[listed + 1].tolist(), strict=True)),
-        use=longest_part(t, jumps),
+        use=longest_uninterrupted_interval(t, jumps),
     )
 
 

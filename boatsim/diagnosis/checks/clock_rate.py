@@ -27,7 +27,7 @@ SPEEDS = ("u_mps", "v_mps")
 
 
 @dataclass(frozen=True)
-class _Compared:
+class _RateComparison:
     """Clock rates by the track and by the heading over turning stretches of all recordings.
 
     Attributes:
@@ -51,27 +51,29 @@ class _Compared:
         return 0.0
 
     @property
-    def sds(self) -> float:
+    def significance(self) -> float:
         """Number of standard deviations by which the correlation differs from none."""
         c = self.correlation
-        return c * float(np.sqrt((self.count - 2.0) / max(1.0 - c * c, 1e-9)))
+        return c * float(np.sqrt((self.effective_sample_size - 2.0) / max(1.0 - c * c, 1e-9)))
 
     @property
-    def count(self) -> float:
+    def effective_sample_size(self) -> float:
         """Number of stretches of equal weight that would be as informative."""
         return float(self.weight.sum() ** 2 / (self.weight**2).sum())
 
-    def ratio(self) -> tuple[float, float]:
+    def velocity_gain(self) -> tuple[float, float]:
         """Gain of the velocities for which both rates agree on average, and its sd."""
         ratio = self.track / self.turning
         middle = _mean(ratio, self.weight)
-        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.count))
+        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.effective_sample_size))
         return middle, sd
 
-    def level(self) -> tuple[float, float]:
+    def mean_clock_rate(self) -> tuple[float, float]:
         """Mean clock rate by the heading, and its sd."""
         middle = _mean(self.turning, self.weight)
-        sd = float(np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.count))
+        sd = float(
+            np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.effective_sample_size)
+        )
         return middle, sd
 
 
@@ -101,11 +103,11 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     compared = _compare(long, config)
     if compared is None:
         return []
-    gain, gain_sd = compared.ratio()
+    gain, gain_sd = compared.velocity_gain()
     wrong_gain = abs(gain - 1.0) > max(config.clock_min_gain, config.clock_gain_sds * gain_sd)
     agree = compared.correlation > config.clock_min_correlation
     found = list[Finding]()
-    if agree and compared.sds > config.clock_min_sds:
+    if agree and compared.significance > config.clock_min_sds:
         found = _wander(examined, gain if wrong_gain else 1.0, compared, config)
     elif not wrong_gain:
         found = _constant_rate(examined, compared, _track_rate(long), config)
@@ -114,7 +116,7 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     return found
 
 
-def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _Compared | None:
+def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _RateComparison | None:
     """Both clock rates over turning stretches; None if these are too few."""
     track, turning, weight = list[Array](), list[Array](), list[Array]()
     for run in runs:
@@ -126,20 +128,20 @@ def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _Compared | Non
         weight.append(run.turned[used] ** 2)
     if sum(map(len, track)) < config.clock_min_stretches:
         return None
-    found = _Compared(*map(np.concatenate, (track, turning, weight)))
+    found = _RateComparison(*map(np.concatenate, (track, turning, weight)))
     usual = np.median(found.weight)
-    found = _Compared(found.track, found.turning, np.minimum(found.weight, usual))
+    found = _RateComparison(found.track, found.turning, np.minimum(found.weight, usual))
     if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
         return _without_contradictions(found, config)
     return found
 
 
-def _without_contradictions(found: _Compared, config: ChecksConfig) -> _Compared | None:
+def _without_contradictions(found: _RateComparison, config: ChecksConfig) -> _RateComparison | None:
     """The stretches in which heading and yaw rate agree in their sense."""
     same = found.turning > 0.0
     if same.sum() < max(config.clock_min_stretches, 0.9 * len(same)):
         return None
-    return _Compared(found.track[same], found.turning[same], found.weight[same])
+    return _RateComparison(found.track[same], found.turning[same], found.weight[same])
 
 
 def _track_rate(runs: Sequence[Stretches]) -> float:
@@ -149,7 +151,7 @@ def _track_rate(runs: Sequence[Stretches]) -> float:
 
 
 def _wander(
-    recordings: Sequence[Recording], gain: float, compared: _Compared, config: ChecksConfig
+    recordings: Sequence[Recording], gain: float, compared: _RateComparison, config: ChecksConfig
 ) -> list[Finding]:
     """The finding of an uneven clock in each recording."""
     runs = [motion_stretches(recording.t, recording.signals) for recording in recordings]
@@ -185,12 +187,12 @@ def _wander(
 
 def _constant_rate(
     recordings: Sequence[Recording],
-    compared: _Compared,
+    compared: _RateComparison,
     everywhere: float,
     config: ChecksConfig,
 ) -> list[Finding]:
     """The finding of a clock that runs too fast or too slowly, on straight courses and in turns."""
-    rate, sd = compared.level()
+    rate, sd = compared.mean_clock_rate()
     if abs(rate - 1.0) < max(config.clock_min_rate, config.clock_min_sds * sd):
         return []
     if (everywhere - 1.0) / (rate - 1.0) < 0.5:

@@ -9,7 +9,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 
-def with_range_of(vessel: Vessel, recordings: Iterable[Recording]) -> Vessel:
+def widen_channel_ranges(vessel: Vessel, recordings: Iterable[Recording]) -> Vessel:
     """Return a vessel whose channels have at least the range of the commands in recordings.
 
     A reader of recordings has refused commands that are too large to be of the channel's unit.

@@ -167,12 +167,12 @@ def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) ->
 def _same_range(recording: Recording, vessel: Vessel, names: list[str]) -> list[str]:
     """Other channels with the same unit and limits, which the same logger wrote."""
 
-    def key(name: str) -> tuple[str, float, float]:
+    def unit_and_range(name: str) -> tuple[str, float, float]:
         return unit_of(name), vessel.commands[name].low, vessel.commands[name].high
 
-    ranges = set(map(key, names))
+    ranges = set(map(unit_and_range, names))
     others = []
     for name in vessel.commands:
-        if name in recording.signals and name not in names and key(name) in ranges:
+        if name in recording.signals and name not in names and unit_and_range(name) in ranges:
             others.append(name)
     return others

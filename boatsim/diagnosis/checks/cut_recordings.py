@@ -10,7 +10,7 @@ Interval = tuple[float, float]  # first and last time [s]
 SPAN = re.compile(r" \(\S+ to \S+ s\)$")  # at the end of the name of a piece
 
 
-def pieces_outside(recording: Recording, intervals: Sequence[Interval]) -> list[Recording]:
+def parts_outside_intervals(recording: Recording, intervals: Sequence[Interval]) -> list[Recording]:
     """Return the parts of a recording outside some intervals that are long enough for a filter.
 
     Args:

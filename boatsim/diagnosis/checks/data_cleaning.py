@@ -94,7 +94,7 @@ def clean_recording(
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
     measured = drop_interpolated_samples(correct_position_times(recording), config.checks)
-    reduced = measured.thinned(priors.used_sample_rate(vessel, duration, config.load))
+    reduced = measured.thinned(priors.downsampling_rate(vessel, duration, config.load))
     return drop_faulty_values(reduced, vessel, config)
 
 

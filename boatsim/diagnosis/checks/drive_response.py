@@ -45,7 +45,7 @@ class Reports(NamedTuple):
 def check_drive_response(
     recording: Recording, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    """Compare the reports of drives with their orders.
+    """Compare the feedback of drives with their commands: dead time, rate limit and lag.
 
     Args:
         recording: A prepared recording.
@@ -96,8 +96,8 @@ def _compare(recording: Recording, order: str, report: str, config: ChecksConfig
     return found
 
 
-def new_reports(t: Array, values: Array) -> Reports:
-    """Return the rows in which a reported value changes, and how long each value is held.
+def feedback_changes(t: Array, values: Array) -> Reports:
+    """Return the rows in which a drive's feedback changes, and how long each value is held.
 
     Args:
         t: Times (N,) [s].
@@ -110,7 +110,7 @@ def new_reports(t: Array, values: Array) -> Reports:
 
 def _outliers(recording: Recording, name: str, config: ChecksConfig) -> list[Finding]:
     """Reports beyond all that was ever ordered; without an order, far beyond the other reports."""
-    reports = new_reports(recording.t, recording[name])
+    reports = feedback_changes(recording.t, recording[name])
     order = name.removeprefix(REPORTED)
     has_order = order != name and order in recording.signals
     if has_order:
@@ -143,7 +143,7 @@ def _stale(
     recording: Recording, order: str, report: str, x: Array, y: Array, config: ChecksConfig
 ) -> list[Finding]:
     """Reports that stay the same while the order changes, and then jump."""
-    reports = new_reports(recording.t, y)
+    reports = feedback_changes(recording.t, y)
     if len(reports.rows) < 2:
         return []
     least = config.report_change * float(np.ptp(x))
@@ -181,7 +181,7 @@ def _stops(
     span = max(float(np.ptp(y)), 1e-12)
     margin = config.stop_margin * span
     near = config.stop_tolerance * span
-    reports = new_reports(recording.t, y)
+    reports = feedback_changes(recording.t, y)
     # wrong reports must not hide a stop
     low, high = np.quantile(reports.values, (config.stop_quantile, 1.0 - config.stop_quantile))
     limits = [-np.inf, np.inf]
@@ -220,7 +220,7 @@ def _limit_finding(
 def _response_finding(
     order: str, t: Array, x: Array, y: Array, config: ChecksConfig
 ) -> list[Finding]:
-    response = fit_response(t, x, y, config)
+    response = fit_drive_response(t, x, y, config)
     span = float(np.ptp(x))
     explained = response.error < config.response_error * response.gap
     rows = response.dead_time / float(np.median(np.diff(t)))
@@ -245,8 +245,8 @@ def _response_finding(
     return [_drive_finding("drive_follows", evidence, "the report may itself be late")]
 
 
-def fit_response(t: Array, x: Array, y: Array, config: ChecksConfig) -> Response:
-    """Return the dead time, largest rate and lag with which a report follows an order best.
+def fit_drive_response(t: Array, x: Array, y: Array, config: ChecksConfig) -> Response:
+    """Return dead time, rate limit and lag with which a drive's feedback follows its command best.
 
     All combinations of a grid are simulated.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.diagnosis.checks.finding import (
     LOG_NOT_BOAT,
     Finding,
-    change_lines,
+    correction_lines,
     recording_toml_lines,
 )
 from boatsim.diagnosis.report.schema import LogEntry
@@ -51,7 +51,7 @@ def finding_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEnt
         "spans_s": list(map(list, finding.spans)),
         "lines": recording_toml_lines(finding, sources),
         "alternatives": [
-            {"words": words, "lines": _without_header(change_lines(changes, sources))}
+            {"words": words, "lines": _without_header(correction_lines(changes, sources))}
             for words, changes in finding.alternatives
         ],
     }
@@ -69,7 +69,7 @@ def _without_header(lines: list[str]) -> list[str]:
     return lines
 
 
-def alternative_lines(lines: Sequence[str]) -> list[str]:
+def alternative_correction_lines(lines: Sequence[str]) -> list[str]:
     """Return the lines of an alternative correction with the header of their table.
 
     Args:
@@ -80,7 +80,7 @@ def alternative_lines(lines: Sequence[str]) -> list[str]:
     return [COLUMNS_TABLE, *lines]
 
 
-def entry_text(entry: LogEntry) -> list[str]:
+def finding_lines(entry: LogEntry) -> list[str]:
     """Return the lines that a command prints for one finding about a recording.
 
     Args:
@@ -93,9 +93,9 @@ def entry_text(entry: LogEntry) -> list[str]:
         spans = ", ".join(_interval(begin, end) for begin, end in entry["spans_s"])
         lines.append(f"  at {spans}")
     if entry["lines"]:
-        lines.append(f"  write into recording.toml: {on_one_line(entry['lines'])}")
+        lines.append(f"  write into recording.toml: {join_toml_lines(entry['lines'])}")
     for other in entry["alternatives"]:
-        toml = on_one_line(alternative_lines(other["lines"]))
+        toml = join_toml_lines(alternative_correction_lines(other["lines"]))
         lines.append(f"  or, if {other['words']}: {toml}")
     if "remedy" in entry:
         lines.append(f"  {entry['remedy']}")
@@ -109,6 +109,6 @@ def _interval(begin: float, end: float) -> str:
     return f"{begin:g} to {end:g} s"
 
 
-def on_one_line(lines: Sequence[str]) -> str:
+def join_toml_lines(lines: Sequence[str]) -> str:
     """Return several lines of TOML joined to one line of text."""
     return " / ".join(lines)

@@ -96,18 +96,18 @@ def scaling_corrections(
     return tuple(Change(name, name, factor, offset) for name in names)
 
 
-def delay_changes(columns: Iterable[str], seconds: float) -> tuple[Change, ...]:
+def delay_corrections(columns: Iterable[str], seconds: float) -> tuple[Change, ...]:
     """Return corrections that remove a delay [s] from each of some recorded columns."""
     return tuple(Change(column, column, delay=seconds) for column in columns)
 
 
-def changed_columns(changes: Iterable[Change]) -> set[str]:
+def corrected_columns(changes: Iterable[Change]) -> set[str]:
     """Return the names of the recorded columns that corrections overwrite."""
     return {change.column for change in changes}
 
 
-def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
-    """Return the longest uninterrupted interval of a time axis that is cut at some rows.
+def longest_uninterrupted_interval(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
+    """Return the longest interval of a time axis that contains no cut.
 
     Args:
         t: Times (N,) [s].
@@ -122,7 +122,7 @@ def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
     return float(longest[0]), float(longest[-1])
 
 
-def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
+def apply_corrections(recording: Recording, changes: Sequence[Change]) -> Recording:
     """Return a recording with corrections applied to its columns, such as changes of unit or sign.
 
     Args:
@@ -130,7 +130,7 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
         changes: The changes; those whose source is missing are ignored.
     """
 
-    def changed(columns: Mapping[str, Array]) -> dict[str, Array]:
+    def correct_columns(columns: Mapping[str, Array]) -> dict[str, Array]:
         result = dict(columns)
         for change in changes:
             if change.source not in columns:
@@ -144,8 +144,8 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
 
     orders = recording.orders
     if orders is not None:
-        orders = replace(orders, signals=changed(orders.signals))
-    signals = changed({"t_s": recording.t, **recording.signals})
+        orders = replace(orders, signals=correct_columns(orders.signals))
+    signals = correct_columns({"t_s": recording.t, **recording.signals})
     t = signals.pop("t_s")
     delays: dict[str, float] = {}
     for change in changes:
@@ -154,12 +154,14 @@ def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
     return replace(recording, t=t, signals=signals, orders=orders).without_latency(delays)
 
 
-def apply_to_all(recordings: Iterable[Recording], changes: Sequence[Change]) -> list[Recording]:
+def apply_corrections_to_all(
+    recordings: Iterable[Recording], changes: Sequence[Change]
+) -> list[Recording]:
     """Return several recordings, each with the same corrections applied to its columns."""
-    return [apply_changes(recording, changes) for recording in recordings]
+    return [apply_corrections(recording, changes) for recording in recordings]
 
 
-def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
+def columns_table_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
     """Return the lines of the table `[columns]` of recording.toml that correct recorded columns.
 
     Args:
@@ -228,10 +230,10 @@ def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) ->
         lines.append(f"use = [{begin:.9g}, {end:.9g}]")
     if finding.clock:
         lines.append(f'clock = "{finding.clock}"')
-    return lines + change_lines(finding.changes, sources)
+    return lines + correction_lines(finding.changes, sources)
 
 
-def change_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
+def correction_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
     """Return the lines of recording.toml, with their tables, that make changes of columns.
 
     Args:
@@ -239,7 +241,7 @@ def change_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -
         sources: Expressions from which the columns are computed so far.
     """
     lines = []
-    columns = column_lines(changes, sources)
+    columns = columns_table_lines(changes, sources)
     if columns:
         lines += ["[columns]", *columns]
     delays = []

@@ -56,7 +56,7 @@ def rows_before_holes(t: Array, vessel: Vessel, config: ChecksConfig) -> NDArray
     return np.flatnonzero(np.diff(t) > config.hole_duration * froude_time_scale(vessel))
 
 
-def before_first_hole(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+def part_before_first_hole(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
     """Return the first part of a recording without a hole that has enough rows.
 
     Args:

@@ -16,12 +16,12 @@ from threadpoolctl import threadpool_limits
 from boatsim.diagnosis.checks.finding import (
     Change,
     Finding,
-    apply_changes,
-    apply_to_all,
-    changed_columns,
+    apply_corrections,
+    apply_corrections_to_all,
+    corrected_columns,
     scaling_corrections,
 )
-from boatsim.diagnosis.checks.holes import before_first_hole
+from boatsim.diagnosis.checks.holes import part_before_first_hole
 from boatsim.diagnosis.checks.reinterpretations import (
     Reinterpretation,
     heading_disagrees_with_course,
@@ -33,7 +33,7 @@ from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
-from boatsim.diagnosis.priors import used_sample_rate
+from boatsim.diagnosis.priors import downsampling_rate
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
@@ -69,23 +69,25 @@ class Comparison:
     map_recording: MapRecording
     config: ChecksConfig
 
-    def mapped(self, recordings: Sequence[Recording], changes: Sequence[Change] = ()) -> Problem:
+    def problem_with_changes(
+        self, recordings: Sequence[Recording], changes: Sequence[Change] = ()
+    ) -> Problem:
         """Return the estimation problem of recordings whose columns are changed.
 
         Raises:
             BadInput: A changed recording cannot be mapped to the vessel.
         """
-        changed = apply_to_all(recordings, changes)
+        changed = apply_corrections_to_all(recordings, changes)
         return self.problem.on(list(map(self.map_recording, changed)))
 
-    def score(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
+    def goodness_of_fit(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
         """Return how well the vessel model explains recordings whose columns are changed.
 
         The coefficients of the vessel are refitted. The log evidence is minus infinity if the
         changed recordings cannot be fitted.
         """
         try:
-            problem = self.mapped(recordings, changes)
+            problem = self.problem_with_changes(recordings, changes)
             _, recalibrated = fit_baseline(problem)
         except (BadInput, np.linalg.LinAlgError, FloatingPointError):
             return Score(-np.inf, np.inf)
@@ -125,7 +127,7 @@ def compare_reinterpretations(
     comparison = Comparison(problem, map_recording, config)
     short = _shortened(recordings, vessel, problem.config)
     with threadpool_limits(1, "blas"):
-        explained = comparison.is_explained(comparison.mapped(short))
+        explained = comparison.is_explained(comparison.problem_with_changes(short))
         if explained and not heading_disagrees_with_course(recordings, vessel, config):
             return []
         return _find_faults(list(map(_with_recorded_rudder, short)), comparison)
@@ -185,36 +187,36 @@ def _shortened(
     Recordings with separate rows for each instrument are reduced to the usual rate first.
     """
     runs = list(recordings)[: config.checks.compare_max_recordings]
-    usual = used_sample_rate(vessel, config=config.load)
+    usual = downsampling_rate(vessel, config=config.load)
     rows = config.checks.compare_max_rows // len(runs)
     short = []
     for run in runs:
         excess = len(run) / float(run.t[-1] - run.t[0]) / usual
         if excess > config.checks.compare_max_rate:
             run = run.thinned(usual / excess)
-        run = before_first_hole(run, vessel, config.checks)
+        run = part_before_first_hole(run, vessel, config.checks)
         short.append(run.between(float(run.t[0]), float(run.t[min(len(run), rows) - 1])))
     return short
 
 
 def _with_recorded_rudder(recording: Recording) -> Recording:
     """The recording with the rudder signs of its file."""
-    return apply_changes(recording, scaling_corrections(reversed_commands(recording), -1.0))
+    return apply_corrections(recording, scaling_corrections(reversed_commands(recording), -1.0))
 
 
 def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:
     found: list[Finding] = []
     corrected: tuple[Change, ...] = ()
     for _ in range(comparison.config.compare_max_faults):
-        current = apply_to_all(recordings, corrected)
+        current = apply_corrections_to_all(recordings, corrected)
         finding = _best_finding(current, comparison)
         if finding is None:
             break
         found.append(finding)
-        if changed_columns(finding.changes) & changed_columns(corrected):
+        if corrected_columns(finding.changes) & corrected_columns(corrected):
             break
         corrected = (*corrected, *finding.changes)
-        if comparison.is_explained(comparison.mapped(current, finding.changes)):
+        if comparison.is_explained(comparison.problem_with_changes(current, finding.changes)):
             break
     return found
 
@@ -225,10 +227,10 @@ def _best_finding(recordings: list[Recording], comparison: Comparison) -> Findin
     candidates = _likeliest(recordings, comparison)
     if not candidates:
         return None
-    recorded = comparison.score(recordings, ())
+    recorded = comparison.goodness_of_fit(recordings, ())
     scored = []
     for candidate in candidates:
-        score = comparison.score(recordings, candidate.changes)
+        score = comparison.goodness_of_fit(recordings, candidate.changes)
         if np.isfinite(score.evidence):
             scored.append((candidate, score))
     if not scored or not np.isfinite(recorded.evidence):
@@ -298,14 +300,14 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
     of many rotations is included.
     """
     config = comparison.config
-    problem = comparison.mapped(recordings)
+    problem = comparison.problem_with_changes(recordings)
     nominal = problem.nominal_hypothesis()
     levels = fit_noise(problem, problem.nominal_hypothesis()).levels
     on = problem.program.effect_switches()
 
-    def log_likelihood(each: Reinterpretation) -> float:
+    def log_likelihood_with_changes(each: Reinterpretation) -> float:
         try:
-            changed = comparison.mapped(recordings, each.changes)
+            changed = comparison.problem_with_changes(recordings, each.changes)
         except BadInput:
             return -np.inf
         value = changed.log_likelihood(nominal.free, nominal.theta, on, levels)
@@ -316,9 +318,11 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
         step = config.rotation_coarse_step
         angles = np.arange(-180.0 + step, 180.0 + 0.5 * step, step)
         rotations = np.radians(angles[angles % 90.0 != 0.0]).tolist()
-        candidates.append(max(map(heading_offset_hypothesis, rotations), key=log_likelihood))
-    scores = {each.words: log_likelihood(each) for each in candidates}
-    recorded = log_likelihood(Reinterpretation("as recorded", "", ()))
+        candidates.append(
+            max(map(heading_offset_hypothesis, rotations), key=log_likelihood_with_changes)
+        )
+    scores = {each.words: log_likelihood_with_changes(each) for each in candidates}
+    recorded = log_likelihood_with_changes(Reinterpretation("as recorded", "", ()))
     better = [each for each in candidates if scores[each.words] > recorded]
     better.sort(key=lambda each: -scores[each.words])
     return sorted(better[: config.compare_max_candidates], key=candidates.index)
@@ -338,7 +342,7 @@ def _refined_rotation(
     scores = []
     for angle in angles:
         changes = heading_offset_hypothesis(float(np.radians(angle))).changes
-        scores.append(comparison.score(recordings, changes).evidence)
+        scores.append(comparison.goodness_of_fit(recordings, changes).evidence)
     top = int(np.clip(np.argmax(scores), 1, len(steps) - 2))
     near = slice(top - 1, top + 2)
     curvature, slope, _ = np.polyfit(steps[near], scores[near], 2)

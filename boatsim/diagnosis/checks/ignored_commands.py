@@ -87,11 +87,11 @@ def _commanded(mapped: MappedRecording) -> Array:
     """Forces (N, axes) of the drives at rest, beyond those that act without commands."""
     program = mapped.program
     rest = np.zeros((len(mapped.times), 2 * program.module.NQ))
-    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
     neutral = {name: c.neutral for name, c in program.vessel.commands.items()}
     on = program.effect_switches()
     commands = program.command_array(neutral)
-    program.functions.settle_actuators(commands, memory, mapped.values, on, act)
+    program.estimation_functions.settle_actuators(commands, memory, mapped.values, on, act)
     idle = body_forces(mapped, rest[:1], [act], mapped.values)
     return body_forces(mapped, rest, actuator_states(mapped), mapped.values) - idle
 

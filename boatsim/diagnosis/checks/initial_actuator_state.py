@@ -60,5 +60,5 @@ def _lies_still(recording: MappedRecording, levels: NoiseLevels, config: ChecksC
     nq = recording.program.module.NQ
     on = recording.program.effect_switches()
     means = recording.smooth(recording.values, on, levels).means
-    energy = means[:, nq : 2 * nq] ** 2 @ recording.inertia
+    energy = means[:, nq : 2 * nq] ** 2 @ recording.inertia_with_added_mass
     return bool(energy[0] <= config.initial_rest_speed**2 * energy.max())

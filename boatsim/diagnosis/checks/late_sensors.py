@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnosis.checks.finding import Change, Finding, delay_changes
+from boatsim.diagnosis.checks.finding import Change, Finding, delay_corrections
 from boatsim.diagnosis.checks.rivals import (
     FaultComparison,
     best_rival,
-    refitted,
-    with_effects_of,
+    fit_with_rival_effects,
+    fit_without_effects,
 )
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.priors import froude_time_scale
@@ -58,7 +58,7 @@ class _Delay:
 
     @property
     def changes(self) -> tuple[Change, ...]:
-        return delay_changes(COLUMNS[self.name][0], self.seconds)
+        return delay_corrections(COLUMNS[self.name][0], self.seconds)
 
 
 def check_late_sensors(recordings: Sequence[Recording], problem: Problem) -> list[Finding]:
@@ -99,7 +99,7 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
 
     The noise levels are those of the recordings as they are.
     """
-    recorded = compared.with_changes(())
+    recorded = compared.problem_with_changes(())
     nominal = recorded.nominal_hypothesis()
     levels = fit_noise(recorded, nominal).levels
     on = recorded.program.effect_switches()
@@ -110,7 +110,7 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
     for name in COLUMNS:
         for seconds in np.arange(stride, compared.lost + 1e-9, stride).tolist():
             one = _Delay(name, step * round(seconds / step), 0.0)
-            changed = compared.with_changes(one.changes)
+            changed = compared.problem_with_changes(one.changes)
             value = changed.log_likelihood(nominal.free, nominal.theta, on, levels)
             if np.isfinite(value) and value > best.value:
                 best = _Delay(name, one.seconds, value)
@@ -124,17 +124,19 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
     """The finding of a delay that explains the recordings better than all other effects."""
     config = compared.problem.config.checks
     vessel = compared.problem.program.vessel
-    unchanged = refitted(compared.with_changes(())).evidence
+    unchanged = fit_without_effects(compared.problem_with_changes(())).evidence
     first = _refitted_delay(compared, suspect.name, suspect.seconds)
     if not first.value > unchanged:  # the other coefficients explain it as well
         return []
     best = _refined_delay(compared, first, step)
     if best.value - unchanged < config.compare_min_lead:
         return []
-    program = compared.with_rivals(RIVALS)
+    program = compared.program_with_rivals(RIVALS)
     enough = best.value + compared.required_gain
-    rival = best_rival(compared.with_changes((), program), config, enough)
-    patched = with_effects_of(compared.with_changes(best.changes, program), rival, rival.effects)
+    rival = best_rival(compared.problem_with_changes((), program), config, enough)
+    patched = fit_with_rival_effects(
+        compared.problem_with_changes(best.changes, program), rival, rival.effects
+    )
     gain = max(patched.evidence, best.value) - rival.evidence
     if gain < compared.required_gain:
         return []
@@ -156,7 +158,7 @@ def _findings(compared: FaultComparison, suspect: _Delay, step: float) -> list[F
 
 def _refitted_delay(compared: FaultComparison, name: str, seconds: float) -> _Delay:
     """A delay with its evidence where the coefficients are refitted."""
-    found = refitted(compared.with_changes(_Delay(name, seconds, 0.0).changes))
+    found = fit_without_effects(compared.problem_with_changes(_Delay(name, seconds, 0.0).changes))
     return _Delay(name, seconds, float(found.evidence))
 
 

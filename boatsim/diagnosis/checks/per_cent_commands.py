@@ -13,8 +13,8 @@ from boatsim.diagnosis.checks.finding import Change, Finding
 from boatsim.diagnosis.checks.rivals import (
     FaultComparison,
     best_rival,
-    refitted,
-    with_effects_of,
+    fit_with_rival_effects,
+    fit_without_effects,
 )
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.problem import Problem
@@ -58,15 +58,17 @@ def check_per_cent_commands(recordings: Sequence[Recording], problem: Problem) -
     compared = FaultComparison(recordings, problem)
     try:
         with threadpool_limits(1, "blas"):
-            converted = refitted(compared.with_changes(changes))
-            recorded = refitted(compared.with_changes(()))
+            converted = fit_without_effects(compared.problem_with_changes(changes))
+            recorded = fit_without_effects(compared.problem_with_changes(()))
             gain = converted.evidence - recorded.evidence
             if gain < config.compare_min_lead:
                 return []
-            program = compared.with_rivals(RIVALS)
-            newtons = best_rival(compared.with_changes((), program), config, np.inf)
+            program = compared.program_with_rivals(RIVALS)
+            newtons = best_rival(compared.problem_with_changes((), program), config, np.inf)
             others = [name for name in newtons.effects if name != RIVALS[0]]
-            per_cent = with_effects_of(compared.with_changes(changes, program), newtons, others)
+            per_cent = fit_with_rival_effects(
+                compared.problem_with_changes(changes, program), newtons, others
+            )
     except (BadInput, np.linalg.LinAlgError, FloatingPointError):
         return []
     best = max(per_cent.evidence, converted.evidence)

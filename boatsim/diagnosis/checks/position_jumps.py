@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_part
+from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_uninterrupted_interval
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -58,7 +58,7 @@ def _check_columns(
             f"{', '.join(columns)} jump permanently: {', '.join(places)}",
             probability=config.probability_strong,
             spans=tuple(zip(t[rows].tolist(), t[rows + 1].tolist(), strict=True))[:MAX_LISTED],
-            use=longest_part(t, rows),
+            use=longest_uninterrupted_interval(t, rows),
         )
     ]
 

@@ -5,7 +5,7 @@ Such a velocity has another sign or unit, a delay, or belongs to another point o
 
 import numpy as np
 
-from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_changes
+from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_corrections
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
@@ -153,7 +153,7 @@ def _check_delay(
             f"{name} is {delay:.3g} s {sense} {others}. This delay explains {removed:.0f} % of "
             "their difference",
             probability=config.probability_likely,
-            changes=delay_changes(late, delay),
+            changes=delay_corrections(late, delay),
             alternatives=alternatives,
         )
     ]
@@ -170,7 +170,7 @@ def _late_columns(
         if behind:
             return (name,), "psi_rad", ()
         words = "x_m and y_m come from the same instrument as psi_rad"
-        return ("psi_rad",), "psi_rad", ((words, delay_changes(PLANAR_POSE, delay)),)
+        return ("psi_rad",), "psi_rad", ((words, delay_corrections(PLANAR_POSE, delay)),)
     if behind:
         return (name,), "x_m, y_m, psi_rad", ()
     return ("x_m", "y_m"), "x_m, y_m, psi_rad", ()

@@ -14,8 +14,8 @@ from boatsim.diagnosis.checks.course_over_ground import heading_offset
 from boatsim.diagnosis.checks.finding import (
     PLANAR_POSE,
     Change,
-    apply_to_all,
-    changed_columns,
+    apply_corrections_to_all,
+    corrected_columns,
     scaling_corrections,
 )
 from boatsim.diagnosis.config import ChecksConfig
@@ -74,13 +74,19 @@ def reinterpretations(
     """
     columns = set[str]().union(*(r.signals for r in recordings))
 
-    def available(changes: Sequence[Change]) -> tuple[Change, ...]:
+    def changes_of_recorded_columns(changes: Sequence[Change]) -> tuple[Change, ...]:
         return tuple(c for c in changes if c.source in columns)
 
     found = []
     for each in (*_axes(recordings, vessel, config), *_drives(recordings, vessel, config)):
-        others = tuple((words, available(changes)) for words, changes in each.alternatives)
-        found.append(Reinterpretation(each.name, each.words, available(each.changes), others))
+        others = tuple(
+            (words, changes_of_recorded_columns(changes)) for words, changes in each.alternatives
+        )
+        found.append(
+            Reinterpretation(
+                each.name, each.words, changes_of_recorded_columns(each.changes), others
+            )
+        )
     return found
 
 
@@ -113,7 +119,7 @@ def heading_disagrees_with_course(
     angle, agreement = _mean_drift_angle(recordings, vessel)
     if abs(angle) > config.heading_min_offset and agreement > config.heading_min_agreement:
         return True
-    mirrored = apply_to_all(recordings, MIRRORED_HEADING)
+    mirrored = apply_corrections_to_all(recordings, MIRRORED_HEADING)
     _, mirrored_agreement = _mean_drift_angle(mirrored, vessel)
     better = mirrored_agreement > agreement + config.heading_min_improvement
     return better and mirrored_agreement > config.heading_min_agreement
@@ -183,7 +189,7 @@ def _drives(
     channels = _common_commands(recordings, vessel)
     exchanged = _exchanged_sides(channels)
     if exchanged:
-        names = " and ".join(sorted(changed_columns(exchanged)))
+        names = " and ".join(sorted(corrected_columns(exchanged)))
         yield Reinterpretation("thrusters_exchanged", f"{names} are exchanged", exchanged)
     reversible = [n for n in channels if vessel.commands[n].low < 0.0 < vessel.commands[n].high]
     for unit in dict.fromkeys(map(unit_of, channels)):

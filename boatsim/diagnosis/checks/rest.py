@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.checks.cut_recordings import Interval, pieces_outside
+from boatsim.diagnosis.checks.cut_recordings import Interval, parts_outside_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DiagnosisConfig
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import motion_signals
@@ -24,7 +24,7 @@ from boatsim.recordings.table import Recording
 ELEVATION = "_m"  # ends the name of a recorded elevation of the water
 
 
-def without_rest(loaded: Loaded, config: DiagnosisConfig) -> Loaded:
+def cut_intervals_at_rest(loaded: LoadedRecordings, config: DiagnosisConfig) -> LoadedRecordings:
     """Return the recordings of a guided vessel without the rows at rest, with a finding for each.
 
     Recordings of other vessels are returned as they are, and so is one that never moves.
@@ -42,7 +42,7 @@ def without_rest(loaded: Loaded, config: DiagnosisConfig) -> Loaded:
             intervals: list[Interval] = []
             if is_guided(vessel, recording):
                 intervals = intervals_at_rest(recording, vessel, config)
-            pieces = pieces_outside(recording, intervals)
+            pieces = parts_outside_intervals(recording, intervals)
             kept += pieces or [recording]
             if intervals and pieces:
                 findings.append(rest_finding(recording, intervals))

@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from boatsim.diagnosis.candidates import program_with_candidates
-from boatsim.diagnosis.checks.finding import Change, apply_to_all
+from boatsim.diagnosis.checks.finding import Change, apply_corrections_to_all
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
@@ -33,7 +33,9 @@ class FaultComparison:
     problem: Problem
     lost: float = 0.0
 
-    def with_changes(self, changes: Sequence[Change], program: Program | None = None) -> Problem:
+    def problem_with_changes(
+        self, changes: Sequence[Change], program: Program | None = None
+    ) -> Problem:
         """Return the problem of the recordings with changes of columns.
 
         Args:
@@ -46,7 +48,7 @@ class FaultComparison:
         first = self.problem
         used = program or first.program
         levels = prior_noise_levels(used.vessel, self.recordings, first.config)
-        changed = apply_to_all(self.recordings, changes)
+        changed = apply_corrections_to_all(self.recordings, changes)
         mapped = []
         for before, after in zip(self.recordings, changed, strict=True):
             part = after.between(before.t[0] + 1e-6, before.t[-1] - self.lost)
@@ -54,7 +56,7 @@ class FaultComparison:
             mapped.append(infer_initial_actuator_state(one, levels, first.config.checks))
         return Problem(mapped, levels, first.uncertainty, None, first.config)
 
-    def with_rivals(self, names: Collection[str]) -> Program:
+    def program_with_rivals(self, names: Collection[str]) -> Program:
         """Return the program of the vessel with the effects that may look like a fault."""
         return program_with_candidates(self.problem.program.vessel, names)
 
@@ -66,7 +68,7 @@ class FaultComparison:
         return max(config.compare_min_gain, config.compare_min_gain_per_row * rows)
 
 
-def refitted(problem: Problem) -> Fit:
+def fit_without_effects(problem: Problem) -> Fit:
     """Return the fit of the vessel with refitted coefficients and without further effects."""
     return fit_baseline(problem).recalibrated
 
@@ -79,7 +81,7 @@ def best_rival(problem: Problem, config: ChecksConfig, enough: float) -> Fit:
         config: Thresholds of the quality checks.
         enough: Evidence from which no further effect is needed [nats].
     """
-    best = refitted(problem)
+    best = fit_without_effects(problem)
     left = list(problem.program.candidate_names)
     for _ in range(config.late_max_rivals):
         if not left or best.evidence > enough:
@@ -95,8 +97,8 @@ def best_rival(problem: Problem, config: ChecksConfig, enough: float) -> Fit:
     return best
 
 
-def with_effects_of(problem: Problem, rival: Fit, effects: Sequence[str]) -> Fit:
-    """Return the fit of another problem with effects of a rival.
+def fit_with_rival_effects(problem: Problem, rival: Fit, effects: Sequence[str]) -> Fit:
+    """Fit the log without its fault with the effects of a rival explanation; return the fit.
 
     Args:
         problem: The problem of the log without its fault.
@@ -108,6 +110,6 @@ def with_effects_of(problem: Problem, rival: Fit, effects: Sequence[str]) -> Fit
 
 def _start(problem: Problem, found: Fit, effects: Sequence[str]) -> Fit:
     """A hypothesis with some effects before its fit, with the values of another fit."""
-    free = problem.parameters(effects)
+    free = problem.free_parameters(effects)
     values = free_parameter_values(free, found.values())
     return unfitted_hypothesis(tuple(effects), free, values, found.levels)

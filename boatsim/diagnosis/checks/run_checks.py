@@ -10,7 +10,7 @@ from boatsim.diagnosis.checks.command_unit import check_command_unit
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
 from boatsim.diagnosis.checks.drive_response import check_drive_response
 from boatsim.diagnosis.checks.excitation import check_excitation
-from boatsim.diagnosis.checks.finding import Finding, apply_changes
+from boatsim.diagnosis.checks.finding import Finding, apply_corrections
 from boatsim.diagnosis.checks.holes import check_holes
 from boatsim.diagnosis.checks.interpolated_positions import check_interpolated_positions
 from boatsim.diagnosis.checks.position_jumps import check_position_jumps
@@ -71,7 +71,7 @@ def _check_part(recording: Recording, vessel: Vessel, config: ChecksConfig) -> l
     for check in TABLE_CHECKS:
         new = check(recording, vessel, config)
         for finding in new:
-            recording = apply_changes(recording, finding.changes)
+            recording = apply_corrections(recording, finding.changes)
         found += new
     return found
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.cut_recordings import pieces_outside
+from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -100,8 +100,8 @@ def _intervals(excess: Array, t: Array, config: ChecksConfig) -> list[NDArray[np
 
 
 def cut_pushes(
-    loaded: Loaded, fitted: Sequence[Sequence[Push]], held_out: Sequence[Sequence[Push]]
-) -> Loaded:
+    loaded: LoadedRecordings, fitted: Sequence[Sequence[Push]], held_out: Sequence[Sequence[Push]]
+) -> LoadedRecordings:
     """Return the recordings without the rows of their pushes, and a finding for each recording.
 
     Args:
@@ -115,7 +115,7 @@ def cut_pushes(
         ((loaded.fitted, fitted), (loaded.held_out, held_out))
     ):
         for recording, own in zip(recordings, pushes, strict=True):
-            pieces = pieces_outside(recording, [(push.begin, push.end) for push in own])
+            pieces = parts_outside_intervals(recording, [(push.begin, push.end) for push in own])
             parts[side] += pieces or [recording]
             if own and pieces:
                 findings.append(push_finding(recording, own))
@@ -141,12 +141,12 @@ def push_finding(recording: Recording, pushes: Sequence[Push]) -> Finding:
     )
 
 
-def without_pushes(
-    loaded: Loaded,
+def recordings_without_pushes(
+    loaded: LoadedRecordings,
     problem: Problem,
     held_out: Sequence[MappedRecording],
     fit: Fit,
-) -> Loaded | None:
+) -> LoadedRecordings | None:
     """Return recordings without pushes, or None if there are none or no force was measured.
 
     Args:

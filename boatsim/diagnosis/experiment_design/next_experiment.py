@@ -16,7 +16,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.config import DiagnosisConfig
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
@@ -65,7 +65,7 @@ class Plan:
     log_bayes_factors: Mapping[str, float]
 
     @property
-    def expected_gain(self) -> float:
+    def expected_log_bayes_factor(self) -> float:
         """Expected log Bayes factor of the manoeuvre against the closest rival hypothesis [nats].
 
         The closest rival is the one with the smallest expected factor.
@@ -88,8 +88,10 @@ def best_plan(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> Plan | 
         The plan; None without rivals, or if no manoeuvre is expected to distinguish them.
     """
     limit = problem.config.plan.min_gain
-    plan = max(all_plans(problem, best, rivals), key=lambda p: p.expected_gain, default=None)
-    if plan is None or plan.expected_gain <= limit:
+    plan = max(
+        all_plans(problem, best, rivals), key=lambda p: p.expected_log_bayes_factor, default=None
+    )
+    if plan is None or plan.expected_log_bayes_factor <= limit:
         return None
     return plan
 
@@ -206,7 +208,7 @@ def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:
         "manoeuvre": plan.manoeuvre,
         "scenario": scenario,
         "separates": list(plan.separates),
-        "expected_gain_nats": round(plan.expected_gain, 2),
+        "expected_gain_nats": round(plan.expected_log_bayes_factor, 2),
     }
 
 
@@ -259,7 +261,8 @@ def distinct_rivals(named: IdentifiedEffect) -> list[str]:
     return [
         rival
         for rival in named.rivals
-        if base_name(without_group(rival)) != base_name(without_group(named.name))
+        if name_without_prefixes(without_group(rival))
+        != name_without_prefixes(without_group(named.name))
     ]
 
 
@@ -320,11 +323,11 @@ def _refit(
     low = np.array(list(map(attrgetter("low"), model.free)))
     high = np.array(list(map(attrgetter("high"), model.free)))
 
-    def values(xi: Array) -> Array:
+    def parameter_values(xi: Array) -> Array:
         return problem.values(recording, model.free, np.clip(model.theta + root @ xi, low, high))
 
     def log_posterior(xi: Array) -> tuple[float, FilterPass]:
-        passed = recording.filter(values(xi), on, best.levels)
+        passed = recording.filter(parameter_values(xi), on, best.levels)
         return passed.log_likelihood - 0.5 * float(xi @ xi), passed
 
     def derivative(xi: Array, about: FilterPass) -> Array:
@@ -333,7 +336,7 @@ def _refit(
         for j in range(len(xi)):
             moved = xi.copy()
             moved[j] += POSTERIOR_STEP
-            changed = recording.whitened_errors(values(moved), on, best.levels, about)
+            changed = recording.whitened_errors(parameter_values(moved), on, best.levels, about)
             U[:, j] = (changed - about.whitened) / POSTERIOR_STEP
         return U
 

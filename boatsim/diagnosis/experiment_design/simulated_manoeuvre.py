@@ -109,10 +109,10 @@ def _as_recording(
         command_values=change_values,
         specified_initial=None,
     )
-    mean = recording.initial.mean.copy()
+    mean = recording.initial_state_prior.mean.copy()
     mean[:nq] = states[0, :nq]
     mean[nq : 2 * nq] = start[nq:]
-    initial = InitialState(mean, recording.initial.covariance, start[nq:])
+    initial = InitialState(mean, recording.initial_state_prior.covariance, start[nq:])
     return replace(recording, specified_initial=initial)
 
 
@@ -120,7 +120,7 @@ def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: 
     """Channels (N, 2 NQ) of a free run as a recording has them, without the latent force."""
     values = problem.values(problem.recordings[0], fit.free, fit.theta)
     out = np.full((1, len(times), len(start)), np.nan)
-    problem.program.functions.simulate_intervals(
+    problem.program.estimation_functions.simulate_intervals(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
         VesselNumbers(

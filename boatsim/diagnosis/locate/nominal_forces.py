@@ -8,7 +8,7 @@ from boatsim.diagnosis.experiment_design.manoeuvres import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
-from boatsim.physics.native.calls import prepare_call
+from boatsim.physics.native.calls import partial_call
 
 
 def actuator_states(
@@ -30,13 +30,13 @@ def actuator_states(
     if values is None:
         values = mapped.values
     on = program.effect_switches(effects)
-    act = np.zeros(program.held_size)
+    act = np.zeros(program.actuator_signal_size)
     memory = np.zeros(program.memory_size)
-    program.functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
+    program.estimation_functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
     steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
     command = np.zeros(mapped.commands.shape[1])
-    advance = prepare_call(
-        program.functions, "advance_actuators", command, memory, ..., values, on, act
+    advance = partial_call(
+        program.estimation_functions, "advance_actuators", command, memory, ..., values, on, act
     )
     parts = np.empty((len(mapped.times), 3, len(act) // 3))
     for row, step in enumerate(steps.tolist()):
@@ -68,9 +68,9 @@ def body_forces(
     """
     program = mapped.program
     on = program.effect_switches(effects)
-    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
-    force = prepare_call(
-        program.functions, "total_body_force", 0.0, y, act, np.int64(0), values, on
+    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.actuator_signal_size)
+    force = partial_call(
+        program.estimation_functions, "total_body_force", 0.0, y, act, np.int64(0), values, on
     )
     rows = []
     for state, actuators in zip(states, held, strict=True):
@@ -96,11 +96,13 @@ def full_thrust(mapped: MappedRecording) -> float:
 
 def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) -> float:
     program = mapped.program
-    act = np.zeros(program.held_size)
+    act = np.zeros(program.actuator_signal_size)
     memory = np.zeros(program.memory_size)
     values = mapped.values
     on = program.effect_switches()
-    program.functions.settle_actuators(program.command_array(commands), memory, values, on, act)
+    program.estimation_functions.settle_actuators(
+        program.command_array(commands), memory, values, on, act
+    )
     rest = np.zeros((1, 2 * program.module.NQ))
     return float(body_forces(mapped, rest, [act], values)[0][0])
 

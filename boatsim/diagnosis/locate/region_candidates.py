@@ -195,10 +195,10 @@ def _direction_sentence(factors: Array) -> str:
 def _square_sentence(variable: str) -> Callable[[Array], str]:
     noun = "moment" if variable.startswith(("yaw", "roll")) else "force"
 
-    def sentence(factors: Array) -> str:
+    def square_term_sentence(factors: Array) -> str:
         return f"the missing {noun} {_verb(factors[0])} with the square of the {variable}"
 
-    return sentence
+    return square_term_sentence
 
 
 def _cube_sentence(factors: Array) -> str:
@@ -239,7 +239,7 @@ def _play_sentence(factors: Array) -> str:
 def _wall_sentence(reach: float, at_wall: float) -> Callable[[Array], str]:
     """Statement about walls; `at_wall` is the proximity of a boat at a wall."""
 
-    def sentence(factors: Array) -> str:
+    def wall_force_sentence(factors: Array) -> str:
         attraction, increase = factors * at_wall
         comparative = "more" if increase > 0.0 else "less"
         direction = "towards" if attraction > 0.0 else "away from"
@@ -248,4 +248,4 @@ def _wall_sentence(reach: float, at_wall: float) -> Callable[[Array], str]:
             f"{comparative}, and the boat is pushed {direction} it by up to {abs(attraction):.2g} N"
         )
 
-    return sentence
+    return wall_force_sentence

@@ -37,7 +37,9 @@ class ScoreStatistics:
     rows: int
 
     @classmethod
-    def of(cls, shapes: Mapping[str, Sequence[Array]], force: LatentForce) -> "ScoreStatistics":
+    def from_latent_force(
+        cls, shapes: Mapping[str, Sequence[Array]], force: LatentForce
+    ) -> "ScoreStatistics":
         """Compute the score statistics of one recording from its smoothed latent force.
 
         The shapes of all candidates are forces over time that may be missing in the vessel model.
@@ -58,9 +60,9 @@ class ScoreStatistics:
         """Return whether the force shapes of a candidate differ from zero in the recordings."""
         return bool(np.diag(self.information)[list(self.columns[name])].any())
 
-    def subset(self, names: Sequence[str]) -> "ScoreStatistics":
+    def select_candidates(self, names: Sequence[str]) -> "ScoreStatistics":
         """Return the score statistics of some candidates only, in the given order."""
-        kept = self.indices(names)
+        kept = self.shape_indices(names)
         columns = _consecutive(dict(zip(names, map(self.columns.__getitem__, names), strict=True)))
         return ScoreStatistics(
             columns,
@@ -70,14 +72,14 @@ class ScoreStatistics:
             self.rows,
         )
 
-    def indices(self, names: Sequence[str]) -> list[int]:
+    def shape_indices(self, names: Sequence[str]) -> list[int]:
         """Return the positions of some candidates' force shapes in the information matrix."""
         found: list[int] = []
         for name in names:
             found += self.columns[name]
         return found
 
-    def test(self, name: str, others: Sequence[str]) -> ScoreTest:
+    def score_test(self, name: str, others: Sequence[str]) -> ScoreTest:
         """Test whether a candidate force is missing in addition to other candidates (score test).
 
         The factors of the other candidates are estimated together with it.
@@ -86,8 +88,8 @@ class ScoreStatistics:
             name: The candidate.
             others: Candidates whose factors are estimated with it.
         """
-        a = self.indices([name])
-        b = self.indices(others)
+        a = self.shape_indices([name])
+        b = self.shape_indices(others)
         inner = self.information[np.ix_(b, b)]
         cross = self.information[np.ix_(a, b)]
         targets = np.column_stack([cross.T, self.score[b]])
@@ -113,7 +115,7 @@ def sum_statistics(statistics: Sequence[ScoreStatistics], names: Sequence[str]) 
         statistics: Statistics of each recording.
         names: Candidates that all recordings have.
     """
-    same = [each.subset(names) for each in statistics]
+    same = [each.select_candidates(names) for each in statistics]
     return ScoreStatistics(
         same[0].columns,
         np.sum([each.information for each in same], axis=0),

@@ -31,7 +31,7 @@ class Region:
     p_value: float  # corrected for the number of tests
 
 
-def regions(problem: Problem, fit: Fit) -> list[Region]:
+def find_missing_force_conditions(problem: Problem, fit: Fit) -> list[Region]:
     """Find the conditions under which the vessel model lacks a force, such as thrust astern.
 
     Conditions are added one by one by score tests of the smoothed latent force; a test for a
@@ -68,7 +68,7 @@ def _score_statistics(problem: Problem, fit: Fit) -> tuple[ScoreStatistics, Mapp
         candidates = region_candidates(mapped, force.states, damping, problem.config.locate)
         shapes = {COEFFICIENTS: tuple(parts)}
         shapes |= {candidate.variable: candidate.shapes for candidate in candidates}
-        statistics.append(ScoreStatistics.of(shapes, force))
+        statistics.append(ScoreStatistics.from_latent_force(shapes, force))
         if k == 0:
             sentences = {candidate.variable: candidate.sentence for candidate in candidates}
         else:
@@ -99,7 +99,7 @@ def _select(
         for name in names:
             if name in chosen:
                 continue
-            result = statistics.test(name, [COEFFICIENTS, *chosen])
+            result = statistics.score_test(name, [COEFFICIENTS, *chosen])
             if result.p_value * tests < max_p and (result.rms > problem.ambient.force).any():
                 p_values[name] = result.p_value
         if not p_values:
@@ -109,7 +109,7 @@ def _select(
     for name in chosen:
         others = chosen.copy()
         others.remove(name)
-        results[name] = statistics.test(name, [COEFFICIENTS, *others])
+        results[name] = statistics.score_test(name, [COEFFICIENTS, *others])
     return results
 
 

@@ -44,7 +44,7 @@ def animation_frames(
     if signal:
         unit, factor = unit_for_signal(signal, runs)
 
-    def joined(model: str, name: str) -> Array:
+    def join_free_runs_of_model(model: str, name: str) -> Array:
         parts = []
         for run, k in zip(runs, rows, strict=True):
             values = run.channels[model].get(name, np.zeros(len(run.t)))
@@ -53,7 +53,7 @@ def animation_frames(
 
     boats = []
     for model in ("recorded", *models):
-        boats.append(_boat(model, joined, t, signal, factor, decimals))
+        boats.append(_boat(model, join_free_runs_of_model, t, signal, factor, decimals))
     return {
         "t": np.round(t, 3).tolist(),
         "start": int(np.argmin(np.abs(t - start))),

@@ -5,15 +5,15 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from boatsim.control.base import wrap
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.checks.entry import column_sources, finding_entry
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.config import AnswerConfig, settings_by_name
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import missing_force as locate
-from boatsim.diagnosis.locate.regions import regions
+from boatsim.diagnosis.locate.regions import find_missing_force_conditions
 from boatsim.diagnosis.locate.residual_structure import Structure
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -22,9 +22,9 @@ from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.report.assumptions import assumptions_entry, excluded_candidates
 from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unconfirmed
 from boatsim.diagnosis.report.described_terms import described_entries
+from boatsim.diagnosis.report.effect_groups import classify_effects
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.incomplete import incomplete_sentence
-from boatsim.diagnosis.report.layers import classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import (
     Acting,
@@ -55,7 +55,7 @@ NEXT_SCENARIO = "next.toml"  # scenario of the next experiment, in the folder of
 
 
 def compose_answer(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     findings: Sequence[Finding],
     decision: Decision,
@@ -81,22 +81,24 @@ def compose_answer(
     entries = {}
     for identified in ranking.named:
         entries[identified.name] = _effect(problem, ranking.best, identified, decision)
-    layers = classify_effects(problem, ranking.best, entries)
-    possible = layers.also_possible
+    groups = classify_effects(problem, ranking.best, entries)
+    possible = groups.also_possible
     for identified in ranking.doubtful:
         possible.append(_possible(problem, ranking.best, identified, decision))
     formulas = described_entries(ranking.description, vessel)
     tested = () if ranking.divergences else question.candidates
     upper, lower = dict[str, dict[str, float]](), dict[str, dict[str, float]]()
     for name, fitted in ranking.last.items():
-        upper[base_name(name)], lower[base_name(name)] = _limits(problem, fitted, name)
+        upper[name_without_prefixes(name)], lower[name_without_prefixes(name)] = _limits(
+            problem, fitted, name
+        )
     answer: Answer = {
-        "verdict": _verdict(ranking, layers.effects, bool(formulas)),
+        "verdict": _verdict(ranking, groups.effects, bool(formulas)),
         "sentence": "",
         "seconds": round(seconds, 3),
         "version": version(),
-        "effects": layers.effects,
-        "refined": layers.refined,
+        "effects": groups.effects,
+        "refined": groups.refined,
         "also_possible": possible,
         "unknown": _unknown(problem, ranking, evaluation),
         "described": formulas,
@@ -108,7 +110,7 @@ def compose_answer(
         "next_experiment": next_experiment.plan_entry(plan, NEXT_SCENARIO),
         "patch": "patched.toml",
         "mean_left": dict(evaluation.mean_force),
-        "tried": sorted({base_name(without_group(name)) for name in tested}),
+        "tried": sorted({name_without_prefixes(without_group(name)) for name in tested}),
         "left_out": excluded_candidates(question),
         "skipped": list(ranking.skipped),
         "facts": dict(problem.recordings[0].facts),
@@ -126,9 +128,9 @@ def compose_answer(
 
 
 def _verdict(ranking: Ranking, effects: Sequence[EffectEntry], described: bool) -> str:
-    if ranking.unknown and described:
+    if ranking.has_unexplained_force_or_cause and described:
         return "described"
-    if ranking.unknown:
+    if ranking.has_unexplained_force_or_cause:
         return "unknown"
     if any(effect["tied_with"] for effect in effects):
         return "ambiguous"
@@ -139,14 +141,14 @@ def _verdict(ranking: Ranking, effects: Sequence[EffectEntry], described: bool) 
 
 def _unknown(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> UnknownEntry:
     entry: UnknownEntry = {
-        "flag": ranking.unknown,
+        "flag": ranking.has_unexplained_force_or_cause,
         "gain_nats": round(ranking.left_over, 3),
         "told_from_nats": round(ranking.told_from, 3),
     }
-    if ranking.unknown:
+    if ranking.has_unexplained_force_or_cause:
         entry["rest"] = locate.missing_force_rms(problem, evaluation.remaining)
     if ranking.stands_in and not ranking.exceeds_assumed_disturbance:
-        entry["stand_ins"] = [base_name(one.name) for one in ranking.doubtful]
+        entry["stand_ins"] = [name_without_prefixes(one.name) for one in ranking.doubtful]
     if ranking.held_out_remains and not (ranking.exceeds_assumed_disturbance or ranking.stands_in):
         entry["held_out_only"] = True
     if ranking.structure.significant:
@@ -189,14 +191,14 @@ def _where(problem: Problem, ranking: Ranking, evaluation: Evaluation) -> WhereE
         )
     if ranking.divergences:  # a linear test for regions would not hold
         return entry
-    for r in regions(problem, ranking.recalibrated):
+    for r in find_missing_force_conditions(problem, ranking.recalibrated):
         entry["region"].append(
             {"variable": r.variable, "statement": r.statement, "p_value": r.p_value}
         )
     return entry
 
 
-def _log(loaded: Loaded, findings: Sequence[Finding]) -> list[LogEntry]:
+def _log(loaded: LoadedRecordings, findings: Sequence[Finding]) -> list[LogEntry]:
     """Return the problems of the recordings."""
     by_file = {str(path): vessel for path, vessel in loaded.vessels.items()}
     entries = []
@@ -238,14 +240,14 @@ def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, s
     """
     found, parameters = dict[str, str](), dict[str, str]()
     for effect in candidates:
-        name, kind = base_name(effect.name), type(effect)
+        name, kind = name_without_prefixes(effect.name), type(effect)
         found[name] = kind.words
         for key, param in kind.params().items():
             if param.fit:
                 parameters[f"{name}.{parameter_key(key, param.unit)}"] = param.words
     for effect in candidates:
         for key, (_, words) in effect.identifiable_ratios(vessel).items():
-            parameters[f"{base_name(effect.name)}.{key}"] = words
+            parameters[f"{name_without_prefixes(effect.name)}.{key}"] = words
     return found | parameters
 
 
@@ -291,13 +293,13 @@ def _effect(
     if group := group_of(named.name):
         acting["group"] = group
     return {
-        "name": base_name(named.name),
+        "name": name_without_prefixes(named.name),
         **acting,
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": _words(best, effect),
-        "tied_with": list(map(base_name, named.tied_with)),
+        "tied_with": list(map(name_without_prefixes, named.tied_with)),
         "parameters": _parameters(problem, best, effect) | _ratios(problem, best, effect),
         "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
@@ -314,7 +316,7 @@ def _possible(
     if judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)
     return {
-        "name": base_name(doubtful.name),
+        "name": name_without_prefixes(doubtful.name),
         "probability": round(doubtful.probability, 4),
         "gain_nats": round(doubtful.gain, 2),
         "words": _words(best, effect),
@@ -346,7 +348,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     own = _fitted_parameters(best, effect)
     fitted = {name: best.value(effect.name, name)[0] for name in own}
 
-    def moved(name: str, step: float) -> Mapping[str, tuple[float, str]]:
+    def ratios_after_step(name: str, step: float) -> Mapping[str, tuple[float, str]]:
         value = np.clip(fitted[name] + step, own[name].low, own[name].high)
         return effect.with_values(fitted | {name: float(value)}).identifiable_ratios(vessel)
 
@@ -355,7 +357,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     if found:
         for name in fitted:
             sd = _parameter(best, effect, name, config)["sd"]
-            low, high = moved(name, -0.5 * sd), moved(name, 0.5 * sd)
+            low, high = ratios_after_step(name, -0.5 * sd), ratios_after_step(name, 0.5 * sd)
             for key in variance:
                 variance[key] += (high[key][0] - low[key][0]) ** 2
     entries: dict[str, ParameterEntry] = {}
@@ -443,11 +445,11 @@ def candidate_entries(ranking: Ranking) -> list[CandidateEntry]:
     found: dict[str, CandidateEntry] = {}
     for name, gain, weight in zip(names, gains[1:], weights[1:], strict=True):
         entry: CandidateEntry = {
-            "name": base_name(name),
+            "name": name_without_prefixes(name),
             "gain_nats": round(float(gain), 2),
             "probability": round(float(weight), 4),
         }
-        found.setdefault(base_name(name), entry)
+        found.setdefault(name_without_prefixes(name), entry)
     return list(found.values())
 
 

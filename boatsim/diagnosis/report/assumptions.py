@@ -1,6 +1,6 @@
 """Entries of the answer on the candidates that were tested and on what was assumed."""
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
@@ -19,12 +19,15 @@ def excluded_candidates(question: Question) -> list[LeftOutEntry]:
         question: The candidates of the diagnosis.
     """
     reasons = dict(question.library.excluded)
-    for name in question.library.tested:
+    for name in question.library.tested_names:
         if name not in question.candidates:
             reasons[name] = BY_USER
     entries: dict[str, LeftOutEntry] = {}
     for name, reason in sorted(reasons.items()):
-        entries[base_name(name)] = {"name": base_name(name), "reason": reason}
+        entries[name_without_prefixes(name)] = {
+            "name": name_without_prefixes(name),
+            "reason": reason,
+        }
     return list(entries.values())
 
 

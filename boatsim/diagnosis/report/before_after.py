@@ -6,7 +6,7 @@ import numpy as np
 
 from boatsim.diagnosis.evaluation import ALONE, MODELS, Evaluation, PartErrors
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.report.model_names import words_of_models
+from boatsim.diagnosis.report.model_names import model_names_in_words
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.view.formatting import format_odds
 
@@ -47,7 +47,7 @@ def error_table(evaluation: Evaluation) -> Table | None:
     header = [
         "fitted recording",
         "rms error of",
-        *words_of_models(MODELS),
+        *model_names_in_words(MODELS),
         "retuned to this part alone",
         "corrected / retuned",
     ]

@@ -3,14 +3,14 @@
 from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import words_of_models
+from boatsim.diagnosis.report.model_names import model_names_in_words
 from boatsim.view.formatting import (
     format_in_one_unit,
     format_number,
     format_odds,
     format_probability,
     join_words,
-    words_of_name,
+    name_in_words,
 )
 
 DEVIATION = "  (± is one standard deviation; after a percentage, in percentage points)"
@@ -19,7 +19,7 @@ EXPLANATION = (
 )
 
 
-def brief_lines(f: Findings) -> list[str]:
+def summary_lines(f: Findings) -> list[str]:
     """Return a diagnosis in a few lines: what is missing, how sure, errors on held-out recordings.
 
     Args:
@@ -32,7 +32,7 @@ def brief_lines(f: Findings) -> list[str]:
     for effect in effects:
         probability, cause = format_probability(effect["probability"]), "this effect"
         if len(effects) > 1:
-            cause = words_of_name(effect["name"])
+            cause = name_in_words(effect["name"])
         lines.append(
             f"How sure: something is missing ({format_odds(effect['gain_nats'])}); {probability} "
             f"that it is {cause}, and not another one that imitates it."
@@ -53,7 +53,7 @@ def _error_lines(f: Findings) -> list[str]:
         if not rms:
             continue
         errors = format_in_one_unit([rms[model] for model in MODELS], unit)
-        pairs = zip(errors, words_of_models(MODELS), strict=True)
+        pairs = zip(errors, model_names_in_words(MODELS), strict=True)
         text = ", ".join(f"{error} {model}" for error, model in pairs)
         gain = rms["recalibrated"] / max(rms["patched"], 1e-300)
         lines.append(f"  {words}: {text}: {format_number(gain, 2)} times smaller than retuned")

@@ -14,8 +14,8 @@ from boatsim.view.formatting import (
     format_nats,
     format_probability,
     format_upper_limit,
+    name_in_words,
     short_odds,
-    words_of_name,
 )
 from boatsim.view.page_blocks import (
     Block,
@@ -27,7 +27,7 @@ from boatsim.view.page_blocks import (
 MOST_VISIBLE_CANDIDATES = 8  # rows of the ranking that are not folded
 
 
-def ranking(f: Findings) -> Iterator[Block]:
+def candidate_ranking_section(f: Findings) -> Iterator[Block]:
     """Yield the evidence for each candidate effect alone: the best ones as odds, all on request.
 
     Args:
@@ -45,7 +45,7 @@ def ranking(f: Findings) -> Iterator[Block]:
         if name in status:
             visible = max(visible, i)
         verdict = status.get(name) or _reason_against(f, name, gain)
-        rows.append([words_of_name(name), odds, verdict, f.words.get(name, "")])
+        rows.append([name_in_words(name), odds, verdict, f.words.get(name, "")])
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone, the best ones first. The odds are those that the "
@@ -69,7 +69,7 @@ def _evidence_of_all(f: Findings) -> Iterator[Block]:
         if c["gain_nats"] < -failed:
             evidence = f"below {format_nats(-failed)}"
         meaning = f.words.get(c["name"], "")
-        rows.append([words_of_name(c["name"]), evidence, probability, meaning])
+        rows.append([name_in_words(c["name"]), evidence, probability, meaning])
     title = f"Statistics of all {len(rows)} candidates"
     if len(rows) == 1:
         title = "Statistics of the candidate"
@@ -101,7 +101,7 @@ def _reason_against(f: Findings, name: str, gain: float) -> str:
         return ""
     if gain < required:
         return "too little evidence"
-    effects = [words_of_name(e["name"]) for e in f.answer["effects"]]
+    effects = [name_in_words(e["name"]) for e in f.answer["effects"]]
     if not effects or f.further_gains.get(name, math.inf) >= required:
         return ""
     if len(effects) == 1:
@@ -118,13 +118,13 @@ def _status(f: Findings) -> dict[str, str]:
         status[refined["name"]] = "number refined"
     for e in f.answer["effects"]:
         for rival in e["tied_with"]:
-            status[rival] = f"look-alike of {words_of_name(e['name'])}"
+            status[rival] = f"look-alike of {name_in_words(e['name'])}"
     for e in f.answer["effects"]:
         status[e["name"]] = "identified"
     return status
 
 
-def upper_limits(f: Findings) -> Iterator[Block]:
+def upper_limits_section(f: Findings) -> Iterator[Block]:
     """Yield the largest strength that each effect may have that was not found.
 
     Args:
@@ -142,7 +142,7 @@ def upper_limits(f: Findings) -> Iterator[Block]:
                 text += " more or less than in the vessel file"
             limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
         if limits:
-            rows.append([words_of_name(name), ", ".join(limits), f.words.get(name, "")])
+            rows.append([name_in_words(name), ", ".join(limits), f.words.get(name, "")])
     if not rows:
         return
     caption = (

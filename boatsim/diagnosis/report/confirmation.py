@@ -10,7 +10,7 @@ from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
 from boatsim.view.formatting import (
     format_in_one_unit,
     join_words,
-    words_of_name,
+    name_in_words,
 )
 
 # Delay of a sensor -> its columns
@@ -148,11 +148,11 @@ def _grouped_names(coefficients: Sequence[str]) -> list[str]:
     by_effect: dict[str, list[str]] = {}
     for name in coefficients:
         effect, _, key = name.rpartition(".")
-        by_effect.setdefault(effect, []).append(words_of_name(key))
+        by_effect.setdefault(effect, []).append(name_in_words(key))
     groups = []
     for effect, keys in by_effect.items():
         if effect:
-            groups.append(f"{words_of_name(effect)} ({', '.join(keys)})")
+            groups.append(f"{name_in_words(effect)} ({', '.join(keys)})")
         else:
             groups += keys
     return groups

@@ -4,7 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import groupby
 
-from boatsim.diagnosis.description import Description, FittedTerm
+from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
 from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
@@ -18,7 +18,7 @@ from boatsim.view.formatting import (
     format_with_sd,
     join_words,
     name_and_unit,
-    words_of_name,
+    name_in_words,
 )
 
 FORCES = {
@@ -47,7 +47,9 @@ TURNING = ("roll", "pitch", "yaw")
 FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
-def described_entries(description: Description | None, vessel: Vessel) -> list[DescribedEntry]:
+def described_entries(
+    description: SymbolicDescription | None, vessel: Vessel
+) -> list[DescribedEntry]:
     """Return the formulas found by symbolic regression in the form used in diagnosis.json.
 
     Args:
@@ -107,7 +109,7 @@ def abscissa_label(over: str) -> str:
     if how:
         return _recent_words(how, signal)
     if unit := UNITS.get(over, ""):
-        return f"{FACTORS.get(over, words_of_name(over))} [{unit}]"
+        return f"{FACTORS.get(over, name_in_words(over))} [{unit}]"
     return name_and_unit(over)[0]
 
 
@@ -251,7 +253,7 @@ def _factor(name: str, term: SymbolicTerm) -> str:
     if name in BEYOND:
         speed = name.removeprefix("beyond_")
         limit = format_quantity(term.beyond, UNITS[speed])
-        return f"the excess of {words_of_name(speed)} over {limit}"
+        return f"the excess of {name_in_words(speed)} over {limit}"
     if name.startswith("abs_"):
         return f"the size of {_factor(name.removeprefix('abs_'), term)}"
     if name.startswith("sign_"):
@@ -265,7 +267,7 @@ def _factor(name: str, term: SymbolicTerm) -> str:
             return f"the {average} of {_factor(signal, term)}"
         return f"the deviation of {_factor(signal, term)} from its {average}"
     if name in UNITS:
-        return words_of_name(name)
+        return name_in_words(name)
     return name_and_unit(name)[0]
 
 

@@ -16,10 +16,10 @@ from boatsim.diagnosis.report.schema import (
 from boatsim.diagnosis.report.sentences import (
     effect_description,
     effects_of_kind,
-    held_out_only,
-    improvement_on_held_out,
-    in_per_cent,
-    refined_rows,
+    held_out_improvement_sentence,
+    held_out_only_statement,
+    ratio_sentences,
+    refined_number_rows,
 )
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
@@ -33,8 +33,8 @@ from boatsim.view.formatting import (
     format_quantity,
     format_with_sd,
     join_words,
+    name_in_words,
     short_odds,
-    words_of_name,
 )
 from boatsim.view.page_blocks import (
     STATISTICS,
@@ -48,7 +48,7 @@ from boatsim.view.page_blocks import (
 )
 
 
-def identified_effects(f: Findings, kind: str) -> Iterator[Block]:
+def identified_effect_sections(f: Findings, kind: str) -> Iterator[Block]:
     """Yield the sections on the identified effects of a kind; the most important comes first.
 
     Args:
@@ -69,13 +69,13 @@ def _first_with_parameters(f: Findings) -> EffectEntry | None:
     return None
 
 
-def refined_numbers(f: Findings) -> Iterator[Block]:
+def refined_numbers_section(f: Findings) -> Iterator[Block]:
     """Yield the numbers of the vessel file that the recordings improve.
 
     Args:
         f: Findings of a diagnosis.
     """
-    rows = refined_rows(f.answer)
+    rows = refined_number_rows(f.answer)
     if not rows:
         return
     yield Text(
@@ -86,7 +86,7 @@ def refined_numbers(f: Findings) -> Iterator[Block]:
     yield Table("Numbers of the vessel file", header, rows)
 
 
-def possible_effects(f: Findings) -> Iterator[Block]:
+def possible_effects_section(f: Findings) -> Iterator[Block]:
     """Yield the effects that may act but that these recordings do not confirm.
 
     Args:
@@ -109,7 +109,7 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
     likely = format_cause_probability(e["probability"])
     yield Heading(capitalize(effect_description(e["words"])), f"{e['name']} · {kind} · {likely}")
-    if ratios := in_per_cent([e]):
+    if ratios := ratio_sentences([e]):
         sentences = [f"{capitalize(ratio)}." for ratio in ratios]
         if explain_deviation and "±" in sentences[0]:
             sentences.append("(± is one standard deviation, in percentage points.)")
@@ -127,7 +127,7 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
     if e["tied_with"]:
         rivals = []
         for name in e["tied_with"]:
-            rivals.append(words_of_name(name))
+            rivals.append(name_in_words(name))
             if name in f.words:
                 rivals[-1] += f" ({_meaning(f.words[name])})"
         yield Text(f"These recordings cannot distinguish it from {join_words(rivals, 'or')}.")
@@ -135,7 +135,7 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
 
 def _held_out_sentences(f: Findings, effect: EffectEntry) -> list[str]:
     """Return what an effect does on held-out data, unless the top of the page has its numbers."""
-    top = improvement_on_held_out(f)
+    top = held_out_improvement_sentence(f)
     for family, pair in effect.get("alone", {}).items():
         before, after = format_in_one_unit([pair["without"], pair["with"]], FAMILIES[family][1])
         if f"{after} in {FAMILIES[family][0]} instead of {before}" not in top:
@@ -183,7 +183,7 @@ def _about_deviations(f: Findings, effect: EffectEntry) -> str:
     )
 
 
-def unexplained_force(f: Findings) -> Iterator[Block]:
+def unexplained_force_section(f: Findings) -> Iterator[Block]:
     """Yield the formulas for what no candidate explains, and the evidence for an unknown cause.
 
     Args:
@@ -201,7 +201,7 @@ def unexplained_force(f: Findings) -> Iterator[Block]:
             f"{format_evidence(unknown['gain_nats'])}. The section on the missing force shows "
             "where and when the force acts."
         )
-    elif sentence := held_out_only(f.answer):
+    elif sentence := held_out_only_statement(f.answer):
         yield Text(f"{capitalize(sentence)}.")
     yield Note(
         STATISTICS,

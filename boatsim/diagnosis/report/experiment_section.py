@@ -13,7 +13,7 @@ from boatsim.view.formatting import (
     format_sentence,
     join_words,
     name_and_unit,
-    words_of_name,
+    name_in_words,
 )
 from boatsim.view.page_blocks import (
     STATISTICS,
@@ -25,7 +25,7 @@ from boatsim.view.page_blocks import (
 )
 
 
-def next_experiment(f: Findings) -> Iterator[Block]:
+def next_experiment_section(f: Findings) -> Iterator[Block]:
     """Yield the manoeuvre that would add most evidence, and how to perform it.
 
     Args:
@@ -49,7 +49,7 @@ def next_experiment(f: Findings) -> Iterator[Block]:
     scenario = wanted["scenario"]
     rivals = []
     for name in wanted["separates"]:
-        rivals.append("no effect at all" if name == "nothing" else words_of_name(name))
+        rivals.append("no effect at all" if name == "nothing" else name_in_words(name))
     commands = "the initial state that it specifies"
     if f.steps:
         commands = "the commands below"
@@ -102,7 +102,7 @@ def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:
     if not named or set(named) & set(separated):
         return ""
     return (
-        f"It is no test of {join_words(map(words_of_name, named))}, about which these recordings "
+        f"It is no test of {join_words(map(name_in_words, named))}, about which these recordings "
         "leave less doubt. It decides what remains open."
     )
 

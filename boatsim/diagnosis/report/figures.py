@@ -204,7 +204,7 @@ def group_by_recording(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
     return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
 
 
-def models_in(run: FreeRun) -> list[str]:
+def model_names_in(run: FreeRun) -> list[str]:
     """Return the names of the vessel models that a free run simulates, in drawing order."""
     return [m for m in MODELS if m in run.channels]
 
@@ -234,7 +234,7 @@ def plan_view(runs: Sequence[FreeRun], models: Sequence[str] = ()) -> Panel:
         models: Models to draw; all of them if none is given.
     """
     lines, across, up = [], [], []
-    for model in ("recorded", *(models or models_in(runs[0]))):
+    for model in ("recorded", *(models or model_names_in(runs[0]))):
         for r in runs:
             path = r.channels[model]
             lines.append(Line(model, path["y_m"], path["x_m"], MODEL_WORDS[model], r.t))
@@ -263,7 +263,7 @@ def _centred(low: float, high: float, size: float) -> tuple[float, float]:
 def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     """Return the errors of the free runs over time; a far larger one of the nominal is cut off."""
     errors, largest = {}, {}
-    for model in models_in(runs[0]):
+    for model in model_names_in(runs[0]):
         errors[model] = [model_error(r, model, signal) for r in runs]
         largest[model] = float(np.nanmax(np.abs(np.concatenate(errors[model])), initial=0.0))
     others = max(largest.get("recalibrated", 0.0), largest.get("patched", 0.0))
@@ -297,7 +297,7 @@ def signal_panel(runs: Sequence[FreeRun], signal: str, models: Sequence[str] = (
     """
     unit, factor = unit_for_signal(signal, runs)
     lines, drawn = [], []
-    for model in ("recorded", *(models or models_in(runs[0]))):
+    for model in ("recorded", *(models or model_names_in(runs[0]))):
         for r in runs:
             lines.append(Line(model, r.t, factor * r.channels[model][signal], MODEL_WORDS[model]))
             if model != "nominal":

@@ -98,7 +98,7 @@ class Findings:
                 return True
         return any(law["carries_over"] for law in self.answer["described"])
 
-    def name_of(self, path: str) -> str:
+    def recording_name(self, path: str) -> str:
         """Return the name of a recording that is given by the path of its file."""
         return self.names.get(path, path)
 

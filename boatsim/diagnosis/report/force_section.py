@@ -9,7 +9,7 @@ from boatsim.diagnosis.report.schema import (
     IntervalEntry,
 )
 from boatsim.diagnosis.report.sentences import (
-    only_measurement_errors,
+    finds_only_measurement_errors,
 )
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
@@ -32,7 +32,7 @@ MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json ha
 MOST_MISSING_FIGURES = 6  # recordings whose missing force is drawn: those flagged longest
 
 
-def missing_force(f: Findings) -> Iterator[Block]:
+def missing_force_section(f: Findings) -> Iterator[Block]:
     """Yield the conditions, the sizes, the curves and the intervals of the missing force.
 
     Args:
@@ -48,7 +48,7 @@ def missing_force(f: Findings) -> Iterator[Block]:
         yield Table("When the force is missing", header, rows)
     if where["axes"]:
         yield _strengths(f)
-        if only_measurement_errors(f.answer):
+        if finds_only_measurement_errors(f.answer):
             yield Text("These forces are not real: they are the result of the measurement error.")
     if f.missing:
         yield from _missing_figures(f)

@@ -13,7 +13,7 @@ MODEL_WORDS: Mapping[str, str] = {
 }
 
 
-def words_of_models(models: Iterable[str]) -> list[str]:
+def model_names_in_words(models: Iterable[str]) -> list[str]:
     """Return the words by which a reader knows these vessel models.
 
     Args:

@@ -18,10 +18,10 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.notebook.arrow import UNIT
 from boatsim.recordings.notebook.figures import TRACK, Curve, Panel, draw_figure
-from boatsim.recordings.notebook.html_table import facts_table, table
-from boatsim.recordings.notebook.labels import words_of
+from boatsim.recordings.notebook.html_table import html_facts_table, html_table
+from boatsim.recordings.notebook.labels import column_in_words
 from boatsim.recordings.notebook.replay import replay_frame, track_of
-from boatsim.view.formatting import format_parameter, format_quantity, words_of_name
+from boatsim.view.formatting import format_parameter, format_quantity, name_in_words
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -113,16 +113,16 @@ def diagnosis_html(f: Findings) -> str:
         f: Findings of the diagnosis.
     """
     parts = [_replay(f)] if f.free_runs else []
-    facts = [("verdict", words_of_name(f.answer["verdict"])), ("vessel", f.vessel)]
+    facts = [("verdict", name_in_words(f.answer["verdict"])), ("vessel", f.vessel)]
     facts += [("fitted", ", ".join(f.runs)), ("held out", ", ".join(f.held_out))]
-    parts.append(facts_table(f.answer["sentence"], facts))
+    parts.append(html_facts_table(f.answer["sentence"], facts))
     rows = []
     for effect in f.answer["effects"]:
         for name, entry in effect["parameters"].items():
             words, value = format_parameter(name, entry["value"], entry["unit"], entry["sd"])
-            rows.append([words_of_name(effect["name"]), words, value])
-    parts.append(table(["identified effect", "parameter", "value"], rows))
-    parts.append(table(["error on held-out data (rms)", *_names()], _error_rows(f.answer)))
+            rows.append([name_in_words(effect["name"]), words, value])
+    parts.append(html_table(["identified effect", "parameter", "value"], rows))
+    parts.append(html_table(["error on held-out data (rms)", *_names()], _error_rows(f.answer)))
     return "".join(parts)
 
 
@@ -180,7 +180,7 @@ def _signal_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     curves = []
     for model in _models(runs):
         curves.append(_curve(runs, model, t, signal, factor))
-    return Panel(f"{words_of(signal)} [{unit.replace('°', 'deg')}]", tuple(curves))
+    return Panel(f"{column_in_words(signal)} [{unit.replace('°', 'deg')}]", tuple(curves))
 
 
 def _distance_panel(runs: Sequence[FreeRun]) -> Panel:

@@ -53,13 +53,13 @@ def write_diagnosis(found: Diagnosis, out: Path) -> None:
             (new / NEXT_SCENARIO).write_text(
                 scenario_text(found.plan, found.vessel), encoding="utf-8"
             )
-        write_overlay(found, new / "diagnosis.rrd")
+        write_rerun_scene(found, new / "diagnosis.rrd")
         (new / "diagnosis.json").write_text(answer, encoding="utf-8")
     if found.plan is None:
         (out / NEXT_SCENARIO).unlink(missing_ok=True)  # of an earlier diagnosis
 
 
-def write_overlay(found: Diagnosis, path: Path) -> None:
+def write_rerun_scene(found: Diagnosis, path: Path) -> None:
     """Write diagnosis.rrd, a rerun scene of the first held-out recording with its simulations.
 
     Args:

@@ -9,14 +9,14 @@ from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.replay_section import animated_replay
 from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import (
-    any_tested,
-    improvement_on_held_out,
+    finds_only_measurement_errors,
+    held_out_improvement_sentence,
     mean_force_paragraph,
-    only_measurement_errors,
+    tested_any_candidate,
     verdict_sentences,
 )
 from boatsim.files import replace_file
-from boatsim.view.formatting import capitalize, join_words, words_of_name
+from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Section, escape_markup, markdown_lines
 
@@ -71,7 +71,7 @@ def report_html(findings: Findings, sections: Sequence[Section]) -> str:
         headline=_headline(findings),
         lead=_lead(findings),
         sections=sections,
-        proof=improvement_on_held_out(findings),
+        proof=held_out_improvement_sentence(findings),
         facts=_facts(findings),
         mean_force=mean_force_paragraph(findings.answer, findings.has_added_effects),
         replay=animated_replay(findings),
@@ -88,7 +88,10 @@ def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
     lines = [f"# {escape_markup(_headline(findings))}", ""]
     if lead := _lead(findings):
         lines += [escape_markup(lead), ""]
-    lines += [f"**{_verdict(findings)}.** {escape_markup(improvement_on_held_out(findings))}", ""]
+    lines += [
+        f"**{_verdict(findings)}.** {escape_markup(held_out_improvement_sentence(findings))}",
+        "",
+    ]
     for paragraph in mean_force_paragraph(findings.answer, findings.has_added_effects):
         lines += [escape_markup(paragraph), ""]
     for name, value in _facts(findings):
@@ -107,7 +110,7 @@ def _headline(f: Findings) -> str:
         return f"{whole.partition('. ')[0]}."
     if len(whole) <= LONGEST_HEADLINE:
         return whole
-    if names := [words_of_name(e["name"]) for e in f.answer["effects"]]:
+    if names := [name_in_words(e["name"]) for e in f.answer["effects"]]:
         rest = ""
         if f.answer["unknown"]["flag"]:
             subject = "they do" if len(names) > 1 else "it does"
@@ -147,9 +150,9 @@ def _verdict(f: Findings) -> str:
     verdict = f.answer["verdict"]
     if _log_problem(f):
         return LOG_PROBLEM
-    if verdict == "unknown" and not any_tested(f.answer):
+    if verdict == "unknown" and not tested_any_candidate(f.answer):
         return NONE_TESTED
-    if only_measurement_errors(f.answer):
+    if finds_only_measurement_errors(f.answer):
         return MEASUREMENT_ERROR
     if verdict == "nothing_missing" and f.answer.get("refined"):
         return REFINED

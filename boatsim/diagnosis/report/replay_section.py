@@ -15,7 +15,7 @@ from boatsim.diagnosis.report.figures import (
     signal_panel,
 )
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.view.formatting import format_number, join_words
 from boatsim.view.replay import (
     MARK,
@@ -24,8 +24,8 @@ from boatsim.view.replay import (
     SECTION_SIZE,
     Outline,
     Replay,
+    axis_limits_with_margin,
     scaled_outline,
-    with_margin,
 )
 from boatsim.view.svg_plots import Panel, legend, stack_panels
 
@@ -69,7 +69,7 @@ def _paths(f: Findings, runs: Sequence[FreeRun], models: Sequence[str]) -> Repla
     """Return paths seen from above."""
     drawn, worst = _around_largest_error(runs, "position", MOST_PATHS)
     panel = plan_view(drawn, models)
-    panel = replace(panel, x=with_margin(panel.x), y=with_margin(panel.y))
+    panel = replace(panel, x=axis_limits_with_margin(panel.x), y=axis_limits_with_margin(panel.y))
     height = panel.y[1] - panel.y[0]
     if "psi_rad" in runs[0].channels["recorded"]:
         outline, scale = _boat(height, f.size)
@@ -110,7 +110,7 @@ def _signals_over_time(
 def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
     return (
         f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the "
-        f"{join_words(words_of_models(models))} vessel"
+        f"{join_words(model_names_in_words(models))} vessel"
     )
 
 

@@ -4,11 +4,11 @@ from os.path import commonprefix
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import FURTHER, REORDERED, base_name
+from boatsim.diagnosis.candidates import FURTHER, REORDERED, name_without_prefixes
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import dof_in_state_order
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question
@@ -23,7 +23,7 @@ from boatsim.physics.vessel import Vessel
 
 def collect_findings(
     answer: Answer,
-    loaded: Loaded,
+    loaded: LoadedRecordings,
     question: Question,
     problem: Problem,
     ranking: Ranking,
@@ -70,7 +70,7 @@ def _own_effects(ranking: Ranking) -> frozenset[str]:
     own = set[str]()
     for name in ranking.last:
         if name.removeprefix(REORDERED).startswith(FURTHER):
-            own.add(base_name(name))
+            own.add(name_without_prefixes(name))
     return frozenset(own)
 
 
@@ -79,11 +79,13 @@ def _further_gains(ranking: Ranking) -> dict[str, float]:
     gains: dict[str, float] = {}
     for name, fitted in ranking.last.items():
         gain = float(fitted.evidence - ranking.best.evidence)
-        gains[base_name(name)] = max(gain, gains.get(base_name(name), -np.inf))
+        gains[name_without_prefixes(name)] = max(
+            gain, gains.get(name_without_prefixes(name), -np.inf)
+        )
     return gains
 
 
-def _names(loaded: Loaded) -> dict[str, str]:
+def _names(loaded: LoadedRecordings) -> dict[str, str]:
     """Return the names of the recordings by the paths of their files."""
     names: dict[str, str] = {}
     for recording in (*loaded.fitted, *loaded.held_out):
@@ -98,12 +100,16 @@ def _missing(vessel: Vessel, evaluation: Evaluation) -> tuple[MissingForceCurve,
     axes = dof_in_state_order(vessel)
     units = {axis: FORCE_UNITS[axis] for axis in axes}
 
-    def by_axis(values: Array) -> dict[str, Array]:
+    def arrays_by_axis(values: Array) -> dict[str, Array]:
         return dict(zip(axes, values.T, strict=True))
 
     found = []
     for force, remaining in zip(evaluation.missing, evaluation.remaining, strict=True):
-        mean, sd, rest = by_axis(force.mean), by_axis(force.sd), by_axis(remaining.mean)
+        mean, sd, rest = (
+            arrays_by_axis(force.mean),
+            arrays_by_axis(force.sd),
+            arrays_by_axis(remaining.mean),
+        )
         found.append(MissingForceCurve(force.run, force.t, mean, sd, dict(units), rest))
     return tuple(found)
 

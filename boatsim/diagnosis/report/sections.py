@@ -4,38 +4,38 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
-from boatsim.diagnosis.checks.entry import alternative_lines
+from boatsim.diagnosis.checks.entry import alternative_correction_lines
 from boatsim.diagnosis.report.candidate_sections import (
+    candidate_ranking_section,
     limits_of_effects_not_found,
-    ranking,
-    upper_limits,
+    upper_limits_section,
 )
 from boatsim.diagnosis.report.effect_sections import (
-    identified_effects,
-    possible_effects,
-    refined_numbers,
-    unexplained_force,
+    identified_effect_sections,
+    possible_effects_section,
+    refined_numbers_section,
+    unexplained_force_section,
 )
-from boatsim.diagnosis.report.experiment_section import next_experiment
+from boatsim.diagnosis.report.experiment_section import next_experiment_section
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.force_section import missing_force
+from boatsim.diagnosis.report.force_section import missing_force_section
 from boatsim.diagnosis.report.glossary import glossary
 from boatsim.diagnosis.report.schema import (
     LogEntry,
 )
 from boatsim.diagnosis.report.sentences import (
-    any_tested,
     assumption_sentences,
-    none_tested_reason,
+    reason_none_tested,
+    tested_any_candidate,
 )
-from boatsim.diagnosis.report.validation_section import validation
+from boatsim.diagnosis.report.validation_section import validation_section
 from boatsim.view.formatting import (
     capitalize,
     format_probability,
     format_sentence,
     format_with_sd,
     join_words,
-    words_of_name,
+    name_in_words,
 )
 from boatsim.view.page_blocks import (
     Block,
@@ -60,15 +60,17 @@ def report_sections(f: Findings) -> list[Section]:
     return [
         Section("log", "Problems of the recordings", list(_log_problems(f))),
         Section("what", "Missing physics", list(_missing_physics(f))),
-        Section("refined", "Numbers refined", list(refined_numbers(f))),
-        Section("possible", "Also possible", list(possible_effects(f))),
+        Section("refined", "Numbers refined", list(refined_numbers_section(f))),
+        Section("possible", "Also possible", list(possible_effects_section(f))),
         Section("taken", "Candidates and assumptions", list(_assumptions(f))),
-        Section("where", "Where and when a force is missing", list(missing_force(f))),
-        Section("ranking", "Ranking of the candidate effects", list(ranking(f))),
-        Section("proof", "Validation on held-out recordings", list(validation(f))),
-        Section("next", "What to record next", list(next_experiment(f))),
+        Section("where", "Where and when a force is missing", list(missing_force_section(f))),
+        Section("ranking", "Ranking of the candidate effects", list(candidate_ranking_section(f))),
+        Section("proof", "Validation on held-out recordings", list(validation_section(f))),
+        Section("next", "What to record next", list(next_experiment_section(f))),
         Section("cannot", "What these recordings cannot show", list(_limitations(f))),
-        Section("limits", "Upper limits of effects that were not found", list(upper_limits(f))),
+        Section(
+            "limits", "Upper limits of effects that were not found", list(upper_limits_section(f))
+        ),
         Section("coefficients", "Coefficients of the model", list(_coefficients(f))),
         Section("files", "Files", list(_files(f))),
         Section("reading", "How to read this report", [Items(glossary(f))]),
@@ -79,30 +81,34 @@ def _log_problems(f: Findings) -> Iterator[Block]:
     """Yield the problems of the recordings with their corrections, and the measurement errors."""
     for e in f.answer.get("log", ()):
         cause = e.get("words", "corrected or allowed for by the diagnosis")
-        facts = f"{f.name_of(e['run'])} · {cause} · probability {format_probability(e['sure'])}"
-        yield Heading(capitalize(words_of_name(e["name"])), facts)
+        facts = (
+            f"{f.recording_name(e['run'])} · {cause} · probability {format_probability(e['sure'])}"
+        )
+        yield Heading(capitalize(name_in_words(e["name"])), facts)
         yield Text(f"{capitalize(e['evidence'])}.")
         yield from _corrections(e)
         if "remedy" in e:
             yield Text(f"{capitalize(e['remedy'])}.")
-    yield from identified_effects(f, "measurement")
+    yield from identified_effect_sections(f, "measurement")
 
 
 def _corrections(e: LogEntry) -> Iterator[Block]:
     if e["lines"]:
         yield FileLines("Write into recording.toml", tuple(e["lines"]))
     for other in e["alternatives"]:
-        yield FileLines(f"Or, if {other['words']}", tuple(alternative_lines(other["lines"])))
+        yield FileLines(
+            f"Or, if {other['words']}", tuple(alternative_correction_lines(other["lines"]))
+        )
 
 
 def _missing_physics(f: Findings) -> Iterator[Block]:
     """Yield the effects that the model lacks, the formulas, and what remains unexplained."""
-    yield from identified_effects(f, "physics")
+    yield from identified_effect_sections(f, "physics")
     unknown = f.answer["unknown"]
-    if not any_tested(f.answer):
-        yield Text(f"{capitalize(none_tested_reason(f.answer))}.")
+    if not tested_any_candidate(f.answer):
+        yield Text(f"{capitalize(reason_none_tested(f.answer))}.")
     elif unknown["flag"]:
-        yield from unexplained_force(f)
+        yield from unexplained_force_section(f)
     elif not f.answer["effects"]:
         yield Text(
             "No candidate effect explains the recordings clearly better than the vessel model "
@@ -129,7 +135,7 @@ def _coefficients(f: Findings) -> Iterator[Block]:
     for name, value in f.coefficients.items():
         if name in refined:  # in the table of refined numbers
             continue
-        row = [words_of_name(name.replace(".", ", ")), _factor(*value)]
+        row = [name_in_words(name.replace(".", ", ")), _factor(*value)]
         if corrected:
             row.append(_factor(*corrected[name]) if name in corrected else "")
         rows.append(row)
@@ -160,7 +166,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
     close = f.setting("select.alike")
     for e in f.answer["effects"]:
         if e["tied_with"]:
-            causes = join_words(map(words_of_name, (e["name"], *e["tied_with"])), "or")
+            causes = join_words(map(name_in_words, (e["name"], *e["tied_with"])), "or")
             lines.append(
                 f"Whether the cause is {causes}: they explain these recordings about equally well "
                 f"(one at most {math.exp(close):.0f} times as probable as another)."
@@ -171,7 +177,7 @@ def _limitations(f: Findings) -> Iterator[Block]:
     lower = f.answer.get("lower_limits", {})
     for name, limits in limits_of_effects_not_found(f).items():
         if not limits and name not in lower:
-            unlimited.append(words_of_name(name))
+            unlimited.append(name_in_words(name))
     if unlimited:
         lines.append(
             f"How strong {join_words(unlimited, 'or')} could be at most: "

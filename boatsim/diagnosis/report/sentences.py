@@ -28,7 +28,7 @@ from boatsim.view.formatting import (
     format_parameter,
     format_quantity,
     join_words,
-    words_of_name,
+    name_in_words,
 )
 
 WAYS = {  # axis -> direction of a positive mean force, and of a negative one
@@ -69,12 +69,12 @@ def effect_description(effect_words: str) -> str:
     return effect_words.removesuffix(" (not physics)")
 
 
-def any_tested(answer: Answer) -> bool:
+def tested_any_candidate(answer: Answer) -> bool:
     """Return whether a diagnosis tested any candidate effect."""
     return bool(answer["candidates"])
 
 
-def only_measurement_errors(answer: Answer) -> bool:
+def finds_only_measurement_errors(answer: Answer) -> bool:
     """Return whether a diagnosis explains the mismatch by measurement errors alone.
 
     No physics is then missing in the vessel model.
@@ -98,7 +98,7 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     """
     if answer["unknown"].get("diverges"):
         return _cannot_follow(answer)
-    if not any_tested(answer):
+    if not tested_any_candidate(answer):
         return _none_tested(answer)
     statements = _effects(answer, words or {})
     statements += _formulas(answer, bool(answer["effects"]))
@@ -114,7 +114,7 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     return " ".join(f"{capitalize(statement)}." for statement in statements)
 
 
-def none_tested_reason(answer: Answer) -> str:
+def reason_none_tested(answer: Answer) -> str:
     """Return the reason, in words, why a diagnosis tested no candidate effect.
 
     Args:
@@ -151,7 +151,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     statements = []
     if answer["unknown"].get("stand_ins") and not answer["described"]:
         statements.append(_stand_ins(answer))
-    elif sentence := held_out_only(answer):
+    elif sentence := held_out_only_statement(answer):
         statements.append(sentence)
     elif answer["unknown"]["flag"] and not answer["described"]:
         statements.append(
@@ -173,7 +173,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     addition = "in addition, " if statements else ""
     if physics or probable:
         statements.append(f"{addition}the model {_left_out(physics, probable)}")
-        statements += in_per_cent(effects_of_kind(answer, "physics"))
+        statements += ratio_sentences(effects_of_kind(answer, "physics"))
     if measured:
         errors = "a measurement error"
         if len(measured) > 1:
@@ -185,11 +185,11 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
                 f"no missing physics was found, but the recordings contain {errors}: "
                 f"{_clauses(measured)}"
             )
-        statements += in_per_cent(effects_of_kind(answer, "measurement"))
+        statements += ratio_sentences(effects_of_kind(answer, "measurement"))
     return statements
 
 
-def in_per_cent(effects: Sequence[EffectEntry]) -> list[str]:
+def ratio_sentences(effects: Sequence[EffectEntry]) -> list[str]:
     """Return the sentences on the main ratios of effects, in per cent.
 
     Args:
@@ -214,7 +214,7 @@ def _main_parameters(effect: EffectEntry) -> dict[str, ParameterEntry]:
     return dict(itertools.islice(found.items(), MOST_NUMBERS))
 
 
-def held_out_only(answer: Answer) -> str:
+def held_out_only_statement(answer: Answer) -> str:
     """Return the statement that only held-out recordings require a force; "" if that is not so.
 
     Args:
@@ -267,7 +267,7 @@ def _refined_numbers(answer: Answer) -> str:
     return f"{count_in_words(len(refined), 'number')} of the rough model"
 
 
-def refined_rows(answer: Answer) -> list[list[str]]:
+def refined_number_rows(answer: Answer) -> list[list[str]]:
     """Return the rows of the report's table of refined numbers of the vessel file.
 
     A refined number is an estimate of the vessel file to which the recordings give a better value.
@@ -326,8 +326,8 @@ def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:
     ties = []
     for effect in effects:
         if effect["tied_with"]:
-            rivals = join_words(map(words_of_name, effect["tied_with"]), "or")
-            ties.append(f"{words_of_name(effect['name'])} from {rivals}")
+            rivals = join_words(map(name_in_words, effect["tied_with"]), "or")
+            ties.append(f"{name_in_words(effect['name'])} from {rivals}")
     if not ties:
         return []
     return [f"these recordings cannot distinguish {join_words(ties)}"]
@@ -385,7 +385,7 @@ def format_fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
     return ", ".join(numbers)
 
 
-def improvement_on_held_out(f: Findings) -> str:
+def held_out_improvement_sentence(f: Findings) -> str:
     """Return a sentence on how much the corrected vessel reduces errors on held-out recordings.
 
     The errors are those of simulations with the recorded commands alone.
@@ -499,7 +499,7 @@ def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
     """Return the excluded effects, grouped by their reason: A and B (no wind); C (no rudder)."""
     by_reason: dict[str, list[str]] = {}
     for entry in excluded:
-        by_reason.setdefault(entry["reason"], []).append(words_of_name(entry["name"]))
+        by_reason.setdefault(entry["reason"], []).append(name_in_words(entry["name"]))
     return "; ".join(f"{join_words(names)} ({reason})" for reason, names in by_reason.items())
 
 
@@ -569,7 +569,7 @@ def _effect_lines(title: str, effects: Sequence[EffectEntry], with_nats: bool) -
 
 def _refined_lines(answer: Answer) -> list[str]:
     """Return the table of refined numbers, with aligned columns."""
-    rows = refined_rows(answer)
+    rows = refined_number_rows(answer)
     if not rows:
         return []
     table = [["number", "before", "after", "off by"], *rows]

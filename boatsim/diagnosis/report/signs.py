@@ -1,6 +1,6 @@
 """Signs of stand-ins in diagnosis.json, and the reason why an effect is only possible."""
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.decision import Decision
@@ -27,10 +27,10 @@ def cause_statistics_entry(decision: Decision) -> SignsEntry:
     for one in decision.judgements:
         effects.append(
             {
-                "name": base_name(one.effect.name),
+                "name": name_without_prefixes(one.effect.name),
                 "gain_nats": round(one.effect.gain, 2),
                 "stochastic": one.stochastic,
-                "tied_with": list(map(base_name, one.effect.tied_with)),
+                "tied_with": list(map(name_without_prefixes, one.effect.tied_with)),
                 "probability": round(one.probability, 4),
                 "signs": _consistency(one.signs),
             }

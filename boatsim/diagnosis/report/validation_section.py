@@ -12,7 +12,7 @@ from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import recalibration_sentences
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, words_of_models
+from boatsim.diagnosis.report.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
     format_in_one_unit,
@@ -35,7 +35,7 @@ FREE_RUN_SIGNALS = {
 }
 
 
-def validation(f: Findings) -> Iterator[Block]:
+def validation_section(f: Findings) -> Iterator[Block]:
     """Yield the errors of free runs over held-out recordings, and their figures.
 
     Args:
@@ -43,9 +43,9 @@ def validation(f: Findings) -> Iterator[Block]:
     """
     fit = f.answer["fit"]
     models: tuple[str, ...] = MODELS[:2]
-    header = words_of_models(models)
+    header = model_names_in_words(models)
     if f.has_added_effects:
-        models, header = MODELS, [*words_of_models(MODELS), "error reduced by factor"]
+        models, header = MODELS, [*model_names_in_words(MODELS), "error reduced by factor"]
     rows = []
     for key, (words, unit) in FAMILIES.items():
         if rms := fit.get(key):

@@ -8,7 +8,7 @@ that a diagnosis gives the same answer everywhere.
 
 from collections.abc import Iterable
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.work import WorkCount
 
 
@@ -46,7 +46,7 @@ class SearchBudget:
         """Computing work that the search may still do, at least 0 [steps x dof]."""
         return max(self._last - self._count.work, 0)
 
-    def continued(self) -> "SearchBudget":
+    def remaining_budget(self) -> "SearchBudget":
         """Return the budget of a further search that has to be complete, with the rest of the work.
 
         What this search has skipped is not taken over.
@@ -61,13 +61,13 @@ class SearchBudget:
         return self._count.work - self._first
 
     @property
-    def spent(self) -> bool:
+    def is_spent(self) -> bool:
         """Whether the search has used its whole budget of computing work."""
         return self.remaining_work == 0
 
     @property
-    def skipped(self) -> tuple[str, ...]:
-        """Sentences on candidate effects that the search skipped because its budget was spent."""
+    def skipped_work_statements(self) -> tuple[str, ...]:
+        """Clauses on the candidates and trials that were skipped because the budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
@@ -92,8 +92,8 @@ class SearchBudget:
             raise BudgetSpentError
         self._omitted[how] = number
 
-    def state(self, what: str) -> None:
-        """Record a statement on a trial that the search skipped because its budget is spent.
+    def record_skipped_trial(self, what: str) -> None:
+        """Record a trial that the search skipped because its budget is spent, as a clause in words.
 
         Args:
             what: A clause, such as "wind was not added".
@@ -107,11 +107,11 @@ class SearchBudget:
             self._statements.append(what)
 
 
-def addition_phrase(effects: Iterable[str]) -> str:
+def in_addition_to_phrase(effects: Iterable[str]) -> str:
     """Return the words "in addition to wind, current" for a set of effects; "alone" for none.
 
     Args:
         effects: Names of the effects of a set.
     """
-    names = ", ".join(dict.fromkeys(map(base_name, effects)))
+    names = ", ".join(dict.fromkeys(map(name_without_prefixes, effects)))
     return f"in addition to {names}" if names else "alone"

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim import progress
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.budget import SearchBudget, addition_phrase
+from boatsim.diagnosis.search.budget import SearchBudget, in_addition_to_phrase
 from boatsim.diagnosis.search.evidence import (
     fits_with_evidence_above,
     leading_candidates,
@@ -62,7 +62,7 @@ class CandidateSets:
             budget: Work that the search may do; None: that of the configuration, from now on.
         """
         self.problem = problem
-        self.budget = budget or SearchBudget(problem.filtered, problem.config.select.budget)
+        self.budget = budget or SearchBudget(problem.work_count, problem.config.select.budget)
         self.config = problem.config
         self.candidates = candidates
         self.base = base
@@ -122,7 +122,7 @@ class CandidateSets:
         found = converge(self.problem, start)
         if known is not None:
             if found.evidence > known.evidence + settled:
-                self.forget_screenings(key)
+                self.discard_cached_screenings(key)
             found = max(found, known, key=lambda f: f.evidence)
         self.fits[key] = found
         return found
@@ -139,8 +139,8 @@ class CandidateSets:
         config, problem = self.config, self.problem
         if unexplained_evidence(problem, found) < config.select.unknown_gain:
             return found
-        other = self.steps_at_assumed_disturbance(found)
-        if self.saves_work and np.isfinite(other.evidence):
+        other = self.gauss_newton_steps_at_assumed_disturbance(found)
+        if self.skips_thorough_search and np.isfinite(other.evidence):
             other = fit(problem, other)
             if self._returns(other, found):
                 return found
@@ -149,7 +149,7 @@ class CandidateSets:
         if not other.evidence > found.evidence + config.fit.refit_gain:
             return found
         key = frozenset(found.effects)
-        self.forget_screenings(key)
+        self.discard_cached_screenings(key)
         self.fits[key] = other
         return other
 
@@ -159,8 +159,8 @@ class CandidateSets:
         off = (other.theta - found.theta) / np.sqrt(np.diag(found.covariance))
         return not gained and bool(np.all(np.abs(off) < self.config.select.same_maximum))
 
-    def steps_at_assumed_disturbance(self, found: Fit) -> Fit:
-        """Return a few Gauss-Newton steps of a fit with the latent force at its assumed level.
+    def gauss_newton_steps_at_assumed_disturbance(self, found: Fit) -> Fit:
+        """Take a few Gauss-Newton steps of one fit, its latent force at most at the assumed level.
 
         Args:
             found: Fit of the vessel model with some candidate effects.
@@ -172,7 +172,7 @@ class CandidateSets:
         start = replace(found, levels=replace(found.levels, force=force), evidence=-np.inf)
         return gauss_newton(self.problem, start, CALM_STEPS, self.config.fit.refit_gain)
 
-    def keep_better(self, found: Fit) -> Fit:
+    def cache_better_fit(self, found: Fit) -> Fit:
         """Store a converged fit if it is better than the cached one of its set; return the better.
 
         Args:
@@ -182,11 +182,11 @@ class CandidateSets:
         known = self.fits.get(key)
         if known is not None and found.evidence <= known.evidence + self.config.fit.refit_gain:
             return known
-        self.forget_screenings(key)
+        self.discard_cached_screenings(key)
         self.fits[key] = found
         return found
 
-    def forget_screenings(self, key: Set) -> None:
+    def discard_cached_screenings(self, key: Set) -> None:
         """Discard cached first estimates of candidate effects that would be added to a given set.
 
         They are out of date if the fit of the set has since improved.
@@ -250,14 +250,18 @@ class CandidateSets:
         """
         key = frozenset(best.effects)
         known = self.screenings.setdefault(key, {})
-        ideas = set(map(base_name, best.effects))
-        rest = [n for n in among or self.candidates if base_name(n) not in ideas and n not in known]
-        if key and self.budget.spent:
+        ideas = set(map(name_without_prefixes, best.effects))
+        rest = [
+            n
+            for n in among or self.candidates
+            if name_without_prefixes(n) not in ideas and n not in known
+        ]
+        if key and self.budget.is_spent:
             self.budget.record_skipped_candidates(
-                len(rest), f"tested {addition_phrase(best.effects)}"
+                len(rest), f"tested {in_addition_to_phrase(best.effects)}"
             )
             return known
-        if rest and key and self.saves_work:
+        if rest and key and self.skips_thorough_search:
             self._screen_lazily(best, rest, floor)
         elif rest:
             report = self._report_screening if len(self.screenings) == 1 else None
@@ -270,7 +274,7 @@ class CandidateSets:
         fits = 0
         # a screening may promise too much: the front is determined again after each full fit
         most = self.config.select.most_full_fits
-        if self.saves_work:
+        if self.skips_thorough_search:
             most = min(most, self.config.select.saving_full_fits)
         while fits < most:
             promising = fits_with_evidence_above(allowed, best.evidence)
@@ -278,9 +282,9 @@ class CandidateSets:
             ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
             if not ahead:
                 break
-            if self.budget.spent:
+            if self.budget.is_spent:
                 self.budget.record_skipped_candidates(
-                    len(ahead), f"fitted in full {addition_phrase(best.effects)}"
+                    len(ahead), f"fitted in full {in_addition_to_phrase(best.effects)}"
                 )
                 break
             name = ahead[0]
@@ -296,7 +300,7 @@ class CandidateSets:
         return known
 
     @property
-    def saves_work(self) -> bool:
+    def skips_thorough_search(self) -> bool:
         """Whether the search has done so much work that it omits what hardly changes its result."""
         return self.budget.used_work > self.config.select.thorough_work
 
@@ -338,7 +342,7 @@ class CandidateSets:
         return self.linearised[1]
 
     def _report_screening(self, share: float) -> None:
-        effects = {base_name(without_group(name)) for name in self.candidates}
+        effects = {name_without_prefixes(without_group(name)) for name in self.candidates}
         stage = f"screening {len(effects)} candidate effects"
         progress.report_part_of(self.report, *SCREENING)(stage, share)
 

@@ -39,7 +39,7 @@ def dissipative_force_name(sets: CandidateSets, best: Fit) -> str:
 def _share_of_power(sets: CandidateSets, best: Fit) -> float:
     """Mean power of the smoothed oscillating force, relative to one in phase with the rates."""
     problem, on = sets.problem, sets.problem.program.effect_switches(best.effects)
-    nq, swell = problem.program.module.NQ, problem.program.functions.oscillating_force
+    nq, swell = problem.program.module.NQ, problem.program.estimation_functions.oscillating_force
     power, largest = 0.0, 0.0
     for mapped in problem.recordings:
         values = problem.values(mapped, best.free, best.theta)

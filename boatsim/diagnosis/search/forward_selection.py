@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.budget import addition_phrase
+from boatsim.diagnosis.search.budget import in_addition_to_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import (
     combined_gain,
@@ -54,9 +54,9 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
             best = further
             continue
         name = max(tested, key=lambda n: tested[n].evidence)
-        if sets.budget.spent:
+        if sets.budget.is_spent:
             gain = tested[name].evidence - best.evidence
-            sets.budget.state(_not_added(name, best, gain))
+            sets.budget.record_skipped_trial(_not_added(name, best, gain))
             break
         converged = sets.refit_from_assumed_disturbance(sets.converged_fit(tested[name]))
         further = _without_unnecessary(sets, converged)
@@ -68,20 +68,20 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
 
 def _not_added(name: str, best: Fit, gain: float) -> str:
     """The statement that a candidate was not added."""
-    where = f" {addition_phrase(best.effects)}" if best.effects else ""
-    added = f"{base_name(name)} was not added{where}"
+    where = f" {in_addition_to_phrase(best.effects)}" if best.effects else ""
+    added = f"{name_without_prefixes(name)} was not added{where}"
     return f"{added}, although a first estimate of its evidence is {gain:.0f} nats"
 
 
 def _report(sets: CandidateSets, best: Fit) -> None:
     """Report the best set so far."""
-    names = ", ".join(map(base_name, best.effects))
+    names = ", ".join(map(name_without_prefixes, best.effects))
     done = END - (END - BEGIN) * REMAINS ** len(best.effects)
     gain = best.evidence - sets.base.evidence
     sets.report("selecting", done, f"best so far: {names} ({gain:.0f} nats)" if names else "")
 
 
-def refit_from_base_levels(sets: CandidateSets, other: Fit) -> Fit:
+def refit_from_baseline_noise_levels(sets: CandidateSets, other: Fit) -> Fit:
     """Refit the effects of a fit, starting from the noise levels of the vessel without effects.
 
     Args:

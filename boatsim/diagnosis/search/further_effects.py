@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
@@ -48,7 +48,7 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     if room < 1 or unexplained_evidence(sets.problem, best) < threshold:
         return None
     if _ends(sets):
-        sets.budget.state(NOT_SOUGHT)
+        sets.budget.record_skipped_trial(NOT_SOUGHT)
         return None
     order = list[str]()
     least = best.evidence
@@ -56,12 +56,12 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     found = _sufficient(singles, best.evidence + sets.required_gain)
     if found is not None or room < 2:
         return found
-    if sets.saves_work:  # second effects are those that promised most alone
+    if sets.skips_thorough_search:  # second effects are those that promised most alone
         order = order[: sets.config.select.saving_seconds]
     pairs: list[Fit] = []
     for single in singles:
         if _ends(sets):
-            sets.budget.state(NOT_SOUGHT)
+            sets.budget.record_skipped_trial(NOT_SOUGHT)
             break
         pairs += _additions(sets, single, order.copy(), least)
     return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)
@@ -76,7 +76,7 @@ def _sufficient(fits: list[Fit], least: float) -> Fit | None:
 def _ends(sets: CandidateSets) -> bool:
     """Whether the budget of the search is spent, or the share of it that is used here."""
     most = sets.config.select.further_share * sets.config.select.budget
-    return sets.budget.spent or sets.further_work > most
+    return sets.budget.is_spent or sets.further_work > most
 
 
 def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -> Iterator[Fit]:
@@ -86,22 +86,22 @@ def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -
     work does not refine fits whose evidence is not above `least`.
     """
     problem = sets.problem
-    calm = sets.steps_at_assumed_disturbance(best)
+    calm = sets.gauss_newton_steps_at_assumed_disturbance(best)
     if not np.isfinite(calm.evidence):
         return
-    ideas = set(map(base_name, best.effects))
+    ideas = set(map(name_without_prefixes, best.effects))
     names = []
     for name in order or sets.candidates:
-        if base_name(name) not in ideas and name not in sets.random | sets.banned:
+        if name_without_prefixes(name) not in ideas and name not in sets.random | sets.banned:
             names.append(name)
     screened = screen(problem, calm, names)
     order[:] = sorted(names, key=lambda name: -screened[name].evidence)
     for name in order[: sets.config.select.further_fits]:
-        start = sets.steps_at_assumed_disturbance(screened[name])
-        if np.isfinite(start.evidence) and sets.saves_work:
+        start = sets.gauss_newton_steps_at_assumed_disturbance(screened[name])
+        if np.isfinite(start.evidence) and sets.skips_thorough_search:
             start = fit(problem, start)
             if not start.evidence > least:
                 yield start
                 continue
         if np.isfinite(start.evidence):
-            yield sets.keep_better(converge(problem, start))
+            yield sets.cache_better_fit(converge(problem, start))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import REORDERED, base_name
+from boatsim.diagnosis.candidates import REORDERED, name_without_prefixes
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
 from boatsim.diagnosis.fit import log_prior
 from boatsim.diagnosis.problem import Fit
@@ -59,8 +59,10 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         named = tuple(_compare_with_rivals(sets, best, name) for name in best.effects)
         better = _better_rivals(sets, best, named)
         further = best
-        if better and sets.budget.spent:
-            sets.budget.state(_not_replaced(best, max(better, key=lambda f: f.evidence)))
+        if better and sets.budget.is_spent:
+            sets.budget.record_skipped_trial(
+                _not_replaced(best, max(better, key=lambda f: f.evidence))
+            )
         elif better:
             further = select_forward(sets, max(better, key=lambda f: f.evidence))
         if frozenset(further.effects) not in examined:
@@ -96,8 +98,12 @@ def _may_have_hidden_others(sets: CandidateSets, best: Fit, removed: IdentifiedE
 def _not_replaced(best: Fit, better: Fit) -> str:
     """The statement that a better set with another effect was not examined."""
     gain = better.evidence - best.evidence
-    old = ", ".join(base_name(name) for name in best.effects if name not in better.effects)
-    new = ", ".join(base_name(name) for name in better.effects if name not in best.effects)
+    old = ", ".join(
+        name_without_prefixes(name) for name in best.effects if name not in better.effects
+    )
+    new = ", ".join(
+        name_without_prefixes(name) for name in better.effects if name not in best.effects
+    )
     return f"{new} did not replace {old}, although that gains {gain:.0f} nats"
 
 
@@ -146,7 +152,9 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
         return False
     alone = sets.fit_without(best, named.name)
     for other in alone.effects:
-        if sets.saves_work and not may_correct_shape(best, named, other, config):
+        if sets.skips_thorough_search and not may_only_correct_other_effect(
+            best, named, other, config
+        ):
             continue
         neither, instead = sets.fit_without(alone, other), sets.fit_without(best, other)
         both = best.evidence - neither.evidence
@@ -156,7 +164,9 @@ def _corrects_shape(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> 
     return False
 
 
-def may_correct_shape(best: Fit, named: IdentifiedEffect, other: str, config: SelectConfig) -> bool:
+def may_only_correct_other_effect(
+    best: Fit, named: IdentifiedEffect, other: str, config: SelectConfig
+) -> bool:
     """Whether an effect may only correct the shape of another one, by the covariance of both.
 
     Effects with independent parameters explain together the sum of what each explains. Then the
@@ -192,7 +202,7 @@ def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect
     for one in (best, sets.fit_without(best, named.name)):
         on = problem.program.effect_switches(one.effects)
         passes = problem.filter(one.free, one.theta, on, best.levels)
-        residual = passes.log_likelihood - passes.log_density
+        residual = passes.log_likelihood - passes.log_density_at_predictions
         found.append(residual + log_prior(one.free, one.theta))
     return not found[0] - found[1] < config.least_gain
 
@@ -245,9 +255,9 @@ def _compare_with_rivals(sets: CandidateSets, best: Fit, name: str) -> Identifie
     key, rivals = frozenset(without.effects), {}
     leading = leading_candidates(others, without, config)[: config.most_rivals]
     for i, rival in enumerate(leading):
-        if sets.budget.spent:
+        if sets.budget.is_spent:
             sets.budget.record_skipped_candidates(
-                len(leading) - i, f"refitted in place of {base_name(name)}"
+                len(leading) - i, f"refitted in place of {name_without_prefixes(name)}"
             )
             break
         found = others[rival]
@@ -266,16 +276,18 @@ def _tested_instead(
     There are none without a budget.
     """
     promising = [n for n in sets.promising_candidates(without) if n != name]
-    if not sets.budget.spent:
+    if not sets.budget.is_spent:
         return sets.screen_unrefuted(without, promising, gain)
     others = set(promising) - sets.banned - set(best.effects)
-    sets.budget.record_skipped_candidates(len(others), f"refitted in place of {base_name(name)}")
+    sets.budget.record_skipped_candidates(
+        len(others), f"refitted in place of {name_without_prefixes(name)}"
+    )
     return {}
 
 
 def _idea(name: str) -> str:
     """The effect of the library that a candidate stands for, whatever its place or group."""
-    return base_name(without_group(name))
+    return name_without_prefixes(without_group(name))
 
 
 def compare_rivals(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
-from boatsim.diagnosis.description import Description
+from boatsim.diagnosis.description import SymbolicDescription
 from boatsim.diagnosis.divergence import Divergence
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
@@ -21,7 +21,10 @@ from boatsim.diagnosis.search.evidence import (
     unexplained_evidence,
     unknown_cause_threshold,
 )
-from boatsim.diagnosis.search.forward_selection import refit_from_base_levels, select_forward
+from boatsim.diagnosis.search.forward_selection import (
+    refit_from_baseline_noise_levels,
+    select_forward,
+)
 from boatsim.diagnosis.search.group_harm import remove_harm_to_groups
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, prune
 from boatsim.diagnosis.search.validation import (
@@ -69,7 +72,7 @@ class Ranking:
     told_from: float  # [nats] of `unexplained_evidence` from which an unknown cause is reported
     structured: bool  # whether that force, however weak, clearly correlates with something
     without: Mapping[str, Fit]  # fits without one of the identified effects, by its name
-    description: Description | None = None  # symbolic description of it
+    description: SymbolicDescription | None = None  # symbolic description of it
     # where the model loses each recording, if fits diverge; nothing was fitted then
     divergences: tuple[Divergence, ...] = ()
     # effects that the best fit contains, but that are probably stand-ins for an unknown cause
@@ -88,10 +91,10 @@ class Ranking:
     @property
     def described_terms(self) -> Mapping[str, SymbolicTerm]:
         """Terms found by symbolic regression that the selected model contains, by name."""
-        return self.description.effects() if self.description else {}
+        return self.description.validated_terms() if self.description else {}
 
     @property
-    def unknown(self) -> bool:
+    def has_unexplained_force_or_cause(self) -> bool:
         """Whether a force or a cause remains that no candidate effect explains."""
         described = self.description is not None or bool(self.divergences)
         return (
@@ -107,7 +110,7 @@ class Ranking:
         return bool(self.left_over > self.told_from) or self.structured
 
 
-def rank(
+def select_and_rank_candidates(
     problem: Problem,
     candidates: tuple[str, ...],
     held_out: Sequence[MappedRecording] = (),
@@ -140,7 +143,7 @@ def rank(
     report("fitting the vessel as written")
     nominal, recalibrated = base or fit_baseline(problem)
     sets = CandidateSets(problem, candidates, recalibrated, report, budget)
-    start = refit_from_base_levels(sets, begin) if begin else recalibrated
+    start = refit_from_baseline_noise_levels(sets, begin) if begin else recalibrated
     best, named = _select(sets, start, held_out)
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
@@ -165,7 +168,7 @@ def rank(
         ),
         structured=_clearly_correlates(sets, correlated, gain, decide.structure_share),
         without=sets.fits_without_each(best),
-        skipped=sets.budget.skipped,
+        skipped=sets.budget.skipped_work_statements,
     )
 
 
@@ -178,9 +181,9 @@ def _select(
     """
     best, named = prune(sets, select_forward(sets, start))
     while True:
-        if sets.budget.spent:
+        if sets.budget.is_spent:
             if best.effects:
-                sets.budget.state(NOT_EXAMINED)
+                sets.budget.record_skipped_trial(NOT_EXAMINED)
             return best, named
         fewer = remove_dwarfed_effect(sets, best, held_out)
         if fewer is best:

@@ -20,7 +20,7 @@ from boatsim.diagnosis.fit import (
     log_truncation_probability,
     unfitted_hypothesis,
 )
-from boatsim.diagnosis.noise_levels import log_force_prior
+from boatsim.diagnosis.noise_levels import log_latent_force_prior
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array, Effect, RandomForce
 
@@ -44,7 +44,7 @@ class Linearisation:
     inverse: Array
 
     @property
-    def white(self) -> Array:
+    def whitened_errors(self) -> Array:
         """Whitened prediction errors (rows,) of the linearised fit."""
         return self.passes.whitened
 
@@ -66,12 +66,12 @@ class Linearisation:
         Args:
             white: (rows,) whitened errors with the effect at a starting point.
         """
-        change = white - self.white
+        change = white - self.whitened_errors
         with np.errstate(over="ignore", invalid="ignore"):  # the simulated boat may diverge
             along = self.columns.T @ change
             length = float(change @ change - along @ (self.inverse @ along))
-            own = self.inverse @ (self.columns.T @ self.white)
-            slope = float(self.white @ change - along @ own)
+            own = self.inverse @ (self.columns.T @ self.whitened_errors)
+            slope = float(self.whitened_errors @ change - along @ own)
         return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
 
 
@@ -204,14 +204,14 @@ def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float
         start: Parameter values of the candidate by name.
     """
     effects = (*base.effects, name)
-    free = problem.parameters(effects)
+    free = problem.free_parameters(effects)
     values = base.values()
     for parameter, x in start.items():
         values.setdefault((name, parameter), x)
     return unfitted_hypothesis(effects, free, free_parameter_values(free, values), base.levels)
 
 
-def hand_over_coefficient(start: Fit, effect: Effect) -> Fit:
+def transfer_coefficient_change(start: Fit, effect: Effect) -> Fit:
     """Transfer the change of a coefficient to the factor of an added effect that scales it.
 
     The recordings determine only the product of both: straight steps along the curve on which it is
@@ -242,7 +242,8 @@ def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """
     points = starting_points(problem, effect)
     return [
-        hand_over_coefficient(add_effect(problem, base, effect.name, x), effect) for x in points
+        transfer_coefficient_change(add_effect(problem, base, effect.name, x), effect)
+        for x in points
     ]
 
 
@@ -253,12 +254,12 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     if len(begun) > config.screening_starts:
         on = problem.program.effect_switches(begun[0].effects)
 
-        def loss(start: Fit) -> float:
+        def negative_predicted_gain(start: Fit) -> float:
             theta = ParameterSpace(start.free).clip(start.theta)
             white = problem.whitened_errors(start.free, theta, on, start.levels, about.passes)
             return -about.predicted_gain(white)
 
-        begun.sort(key=loss)
+        begun.sort(key=negative_predicted_gain)
         begun = begun[: config.screening_starts]
     if len(begun) == 1:
         best = _gauss_newton_steps(problem, begun[0], about, config.screening_steps)
@@ -287,7 +288,7 @@ def _gauss_newton_steps(
     known = about.columns
     slope = np.append(about.slope, np.zeros(len(free) - len(about.slope)))
 
-    def evaluate(x: Array) -> tuple[Array, float]:
+    def whitened_errors_and_score(x: Array) -> tuple[Array, float]:
         white = problem.whitened_errors(free, x, on, levels, about.passes)
         with np.errstate(over="ignore"):  # the simulated boat may diverge
             score = log_prior(free, x) - 0.5 * float(white @ white)
@@ -304,7 +305,7 @@ def _gauss_newton_steps(
         score += float(slope @ ((x - middle) / space.sd))
         return (white, score) if score > least else None
 
-    white, score = evaluate(theta)
+    white, score = whitened_errors_and_score(theta)
     if not score > about.score - config.screening_loss:
         # the other parameters may make up for the start: more mass for more thrust and damping
         J = np.hstack([known, np.zeros((len(known), len(free) - known.shape[1]))])
@@ -323,7 +324,7 @@ def _gauss_newton_steps(
         if better is not None:
             white, score = better
         elif i == config.screening_halvings - 1:
-            white, score = evaluate(theta)
+            white, score = whitened_errors_and_score(theta)
     if not np.isfinite(score):
         return start, -np.inf
     damping, A = FIRST_DAMPING, np.zeros((len(free), len(free)))
@@ -361,22 +362,24 @@ def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linea
     turn. The filter is linearised once; the determinant of what was free before hardly changes.
     """
     before = about.passes.log_likelihood
-    before += log_prior(base.free, base.theta) + log_force_prior(problem, base.levels)
+    before += log_prior(base.free, base.theta) + log_latent_force_prior(problem, base.levels)
 
-    def with_likelihood(at: Fit) -> Fit:
+    def fit_with_evidence(at: Fit) -> Fit:
         on = problem.program.effect_switches(at.effects)
         score = problem.log_likelihood(at.free, at.theta, on, at.levels, about.passes)
         score += log_prior(at.free, at.theta)
-        evidence = base.evidence + score + log_force_prior(problem, at.levels) - before
+        evidence = base.evidence + score + log_latent_force_prior(problem, at.levels) - before
         return replace(at, evidence=evidence)
 
-    best = _most_likely(list(map(with_likelihood, stochastic_starting_fits(problem, base, effect))))
+    best = _most_likely(
+        list(map(fit_with_evidence, stochastic_starting_fits(problem, base, effect)))
+    )
     if isinstance(effect, RandomForce):
         for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
             best = _most_likely(
-                [best, with_likelihood(_without_axis(best, base, effect.name, i, axis))]
+                [best, fit_with_evidence(_without_axis(best, base, effect.name, i, axis))]
             )
-        best = _most_likely([best, with_likelihood(_at_assumed_disturbance(problem, best, base))])
+        best = _most_likely([best, fit_with_evidence(_at_assumed_disturbance(problem, best, base))])
     return best
 
 

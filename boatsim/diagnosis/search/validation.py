@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
-from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_force_prior
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_latent_force_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
@@ -129,7 +129,7 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
         refitted = fit_latent_force_level(problem, found)
         on = problem.program.effect_switches(refitted.effects)
         likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)
-        predicted = likelihood + log_force_prior(problem, refitted.levels)
+        predicted = likelihood + log_latent_force_prior(problem, refitted.levels)
         sets.predictions[key] = found, held_out, predicted  # both stay alive with their identities
     return sets.predictions[key][2]
 

@@ -14,7 +14,7 @@ BINS = 40  # of a curve; the figure of a report is not wider
 FEWEST_ROWS = 3  # of a bin that is drawn; fewer show noise only
 
 
-def curve(
+def term_force_curve(
     recordings: Sequence[FittedRecording], term: SymbolicTerm, coefficient: float, sd: float
 ) -> Curve | None:
     """Return the force of a fitted symbolic term as a curve over the variable it depends on.
@@ -44,11 +44,13 @@ def curve(
         return None
     total = np.bincount(place, weight, BINS)[filled]
 
-    def mean(values: Array) -> Array:
+    def weighted_bin_means(values: Array) -> Array:
         return np.asarray(np.bincount(place, weight * values, BINS)[filled] / total)
 
-    law = mean(size)
-    return Curve(over, mean(x), coefficient * law, sd * np.abs(law), mean(found))
+    law = weighted_bin_means(size)
+    return Curve(
+        over, weighted_bin_means(x), coefficient * law, sd * np.abs(law), weighted_bin_means(found)
+    )
 
 
 def _over(term: SymbolicTerm) -> str:
@@ -71,8 +73,8 @@ def _along(
     The size of a term is its force with a coefficient of 1, relative to that of a constant term.
     The estimate is the residual force of the fit plus the force of the term.
     """
-    size, force = fitted.size(term), fitted.force(term)
-    unit = fitted.force(term.with_values({"of": (), "acts": "always"}))
+    size, force = fitted.term_value(term), fitted.term_force(term)
+    unit = fitted.term_force(term.with_values({"of": (), "acts": "always"}))
     weight = np.einsum("na,na->n", unit, unit)
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.einsum("na,na->n", fitted.residual + coefficient * force, unit) / weight
@@ -95,4 +97,4 @@ def _abscissa(fitted: FittedRecording, term: SymbolicTerm, over: str, size: Arra
     looks_at, deviation = history_codes(term.name, (over,), signals)
     if looks_at:
         average = (looks_at, deviation, term.memory)
-    return fitted.factor(code, (1.0, 0.0, 1.0, 0.0), average)
+    return fitted.factor_value(code, (1.0, 0.0, 1.0, 0.0), average)

@@ -47,7 +47,7 @@ class Course:
     end: float
 
 
-def terms(
+def candidate_terms(
     vessel: Vessel,
     recordings: Recordings,
     speeds: Mapping[str, Array],
@@ -178,14 +178,14 @@ def _row_interval(recordings: Recordings) -> float:
     return max(float(np.median(np.diff(r.times))) for r in recordings)
 
 
-def longest_duration(recordings: Recordings) -> float:
+def longest_recording_duration(recordings: Recordings) -> float:
     """Return the duration [s] of the longest recording."""
     return max(float(r.times[-1] - r.times[0]) for r in recordings)
 
 
 def _memories(recordings: Recordings, config: DescribeConfig) -> list[float]:
     """Return the time constants [s] of averages over the past."""
-    rows, whole = _row_interval(recordings), longest_duration(recordings)
+    rows, whole = _row_interval(recordings), longest_recording_duration(recordings)
     shortest = config.shortest_memory * rows
     longest = max(config.longest_memory, config.shortest_memory * rows / whole) * whole
     return list(map(_allowed_memory, np.geomspace(shortest, longest, config.memories).tolist()))
@@ -281,7 +281,7 @@ def _time_range(recordings: Recordings) -> tuple[float, float]:
     return first, max(float(r.times[-1]) for r in recordings)
 
 
-def neighbours(
+def term_variants(
     term: SymbolicTerm, recordings: Recordings, step: float, config: DescribeConfig
 ) -> list[SymbolicTerm]:
     """Return variants of a term of the symbolic regression with slightly changed constants.
@@ -294,7 +294,7 @@ def neighbours(
         step: Size of the change, relative to the step of the grammar.
         config: Settings of the symbolic regression.
     """
-    whole = longest_duration([r for r in recordings if term.run in ("", r.name)])
+    whole = longest_recording_duration([r for r in recordings if term.run in ("", r.name)])
     found: list[SymbolicTerm] = []
     if term.acts == "within":
         found += _moved_interval(term, step * whole / config.recording_parts)

@@ -4,26 +4,26 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.description import Description, FittedTerm
+from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.evidence import unexplained_evidence
-from boatsim.diagnosis.symbolic.curves import curve
-from boatsim.diagnosis.symbolic.grammar import longest_duration
+from boatsim.diagnosis.symbolic.curves import term_force_curve
+from boatsim.diagnosis.symbolic.grammar import longest_recording_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_term, select_terms
 from boatsim.progress import Report, ignore_progress
 
 
-def describe(
+def describe_residual_force(
     problem: Problem,
     best: Fit,
     recalibrated: Fit,
     held_out: Sequence[MappedRecording],
     report: Report = ignore_progress,
-) -> Description | None:
+) -> SymbolicDescription | None:
     """Describe the force that a fit leaves unexplained by a formula, with symbolic regression.
 
     Args:
@@ -40,18 +40,20 @@ def describe(
     if not found.terms:
         return None
     gains = {}
-    for slot in found.terms:
-        gains[slot] = found.fit.evidence - refit_without_term(problem, found, slot).fit.evidence
+    for placeholder in found.terms:
+        gains[placeholder] = (
+            found.fit.evidence - refit_without_term(problem, found, placeholder).fit.evidence
+        )
     general = _general(problem, found, Formula(best, {}), gains, recalibrated, held_out)
     written, recordings = [], fitted_recordings(problem, found.fit)
-    for slot, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
-        carries = slot in general.terms and not term.run
+    for placeholder, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
+        carries = placeholder in general.terms and not term.run
         fit = general.fit if carries else found.fit
-        value, sd = fit.value(slot, "coefficient")
-        drawn = curve(recordings, term, *found.fit.value(slot, "coefficient"))
-        described = term.with_values({"name": slot, "coefficient": value})
-        written.append(FittedTerm(described, sd, gains[slot], carries, drawn))
-    return Description(
+        value, sd = fit.value(placeholder, "coefficient")
+        drawn = term_force_curve(recordings, term, *found.fit.value(placeholder, "coefficient"))
+        described = term.with_values({"name": placeholder, "coefficient": value})
+        written.append(FittedTerm(described, sd, gains[placeholder], carries, drawn))
+    return SymbolicDescription(
         tuple(written), general.fit, unexplained_evidence(problem, found.fit), found.complete
     )
 
@@ -72,9 +74,9 @@ def _general(
     last choice is the fit without any term, if terms have replaced effects of it.
     """
     chain = [found]
-    for slot in sorted(found.terms, key=lambda n: gains[n]):
-        if not found.terms[slot].run:
-            chain.append(refit_without_term(problem, chain[-1], slot))
+    for placeholder in sorted(found.terms, key=lambda n: gains[n]):
+        if not found.terms[placeholder].run:
+            chain.append(refit_without_term(problem, chain[-1], placeholder))
     events_only = chain[-1]
     if not set(start.fit.effects) <= set(events_only.fit.effects):
         chain.append(start)
@@ -83,7 +85,7 @@ def _general(
         fits[str(k)] = formula.fit
     runs, horizon = [], problem.horizon
     if held_out:
-        horizon = min(problem.horizon, longest_duration(held_out))
+        horizon = min(problem.horizon, longest_recording_duration(held_out))
         runs = free_runs(problem, fits, held_out, horizon)
     before = generalization.mean_square_errors(runs, "recalibrated")
     if not before:  # without held-out data no term is confirmed

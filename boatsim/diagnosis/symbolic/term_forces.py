@@ -81,26 +81,30 @@ class FittedRecording:
         c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
         north, east = (0.0, 0.0)
         if "surge" in axes:
-            north, east = program.functions.water_velocity(self.values, self.on)
+            north, east = program.estimation_functions.water_velocity(
+                self.parameter_values, self.effect_switches
+            )
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
         fields["ur"] = fields["u"] - c * north - s * east
         fields["vr"] = fields["v"] - c * east + s * north
         return Motion(**fields)
 
     @cached_property
-    def values(self) -> Array:
+    def parameter_values(self) -> Array:
         """Parameter values of the fitted vessel model for this recording."""
         return self.problem.values(self.recording, self.fit.free, self.fit.theta)
 
     @cached_property
-    def on(self) -> Array:
+    def effect_switches(self) -> Array:
         """Array (effects,) with 1 for the effects that act in the fit, else 0."""
         return self.problem.program.effect_switches(self.fit.effects)
 
     @cached_property
-    def held(self) -> Array:
+    def actuator_signals(self) -> Array:
         """Actuator signals (K, N) simulated from the recorded commands."""
-        return nominal_forces.actuator_states(self.recording, self.fit.effects, self.values).T
+        return nominal_forces.actuator_states(
+            self.recording, self.fit.effects, self.parameter_values
+        ).T
 
     @cached_property
     def _thrusts(self) -> dict[tuple[str, str], Array]:
@@ -114,7 +118,7 @@ class FittedRecording:
     def _lagged(self) -> dict[float, Array]:
         return {}
 
-    def force(self, term: SymbolicTerm) -> Array:
+    def term_force(self, term: SymbolicTerm) -> Array:
         """Return the force along the recording of a term of the symbolic regression.
 
         The coefficient of the term is taken as 1.
@@ -128,9 +132,9 @@ class FittedRecording:
         axes = dof_in_state_order(self.problem.program.vessel)
         if term.run not in ("", self.recording.name):
             return np.zeros((len(self.states), len(axes)))
-        size = self.size(term)
+        size = self.term_value(term)
         if isinstance(term, DescribedThrust):
-            return self.thrust(term.side, term.sense) * size[:, None]
+            return self.one_sided_thrust(term.side, term.sense) * size[:, None]
         assert isinstance(term, DescribedForce)
         out, m = np.zeros((len(size), len(axes))), self.motion
         if term.axis in axes:
@@ -143,7 +147,7 @@ class FittedRecording:
         out[:, axes.index("sway")] = size * abeam
         return out
 
-    def size(self, term: SymbolicTerm) -> Array:
+    def term_value(self, term: SymbolicTerm) -> Array:
         """Return the value (N,) along the recording of a term of the symbolic regression.
 
         It is the product of the term's factors and of its course over time, without its
@@ -167,10 +171,12 @@ class FittedRecording:
             average = (looks_at, deviation, term.memory)
         codes = terms.factor_codes(term.name, term.of, vessel.described_signals)
         for code in codes[: len(term.of)]:
-            size = size * self.factor(code, detail, average)
+            size = size * self.factor_value(code, detail, average)
         return size
 
-    def factor(self, code: float, detail: terms.Detail, average: Average = NO_AVERAGE) -> Array:
+    def factor_value(
+        self, code: float, detail: terms.Detail, average: Average = NO_AVERAGE
+    ) -> Array:
         """Return one factor (N,) of a term of the symbolic regression, for example a speed.
 
         It is evaluated at all rows of the recording.
@@ -182,14 +188,14 @@ class FittedRecording:
         """
         key = code, detail, average
         if key not in self._factors:
-            held = self.held
+            held = self.actuator_signals
             if average[0] and terms.RECALLED <= code < terms.FIRST_HELD:
-                held = self.averaged(*average)[None]
+                held = self.average_over_past(*average)[None]
             found = terms.factor_value.py_func(self.motion, held, 0, 0, code, detail)
             self._factors[key] = np.asarray(found, dtype=float)
         return self._factors[key]
 
-    def averaged(self, looks_at: float, deviation: float, time_constant: float) -> Array:
+    def average_over_past(self, looks_at: float, deviation: float, time_constant: float) -> Array:
         """Return the average over the past of an actuator signal or its size, along the recording.
 
         The deviation of the signal from that average may be returned instead.
@@ -202,7 +208,7 @@ class FittedRecording:
         Returns:
             Values (N,).
         """
-        signals = np.repeat(self.held, 2, axis=0)
+        signals = np.repeat(self.actuator_signals, 2, axis=0)
         signals[1::2] = np.abs(signals[1::2])
         if time_constant not in self._lagged:
             self._lagged[time_constant] = low_pass_row_means(
@@ -214,7 +220,7 @@ class FittedRecording:
             average = signals[k] - average
         return np.asarray(average)
 
-    def thrust(self, side: str, sense: str) -> Array:
+    def one_sided_thrust(self, side: str, sense: str) -> Array:
         """Return the force of the drives on one side of the hull while they push in one direction.
 
         Args:
@@ -226,17 +232,22 @@ class FittedRecording:
         """
         if (side, sense) not in self._thrusts:
             program = self.problem.program
-            slot = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
-            values = self.values.copy()
-            term = DescribedThrust(name=slot, side=side, sense=sense).with_all_parameters(
+            placeholder = next(e.name for e in program.candidates if isinstance(e, DescribedThrust))
+            values = self.parameter_values.copy()
+            term = DescribedThrust(name=placeholder, side=side, sense=sense).with_all_parameters(
                 program.vessel
             )
             for name, x in term.law_parameters().items():
-                values[program.parameter_index(slot, name)] = x
-            values[program.parameter_index(slot, "coefficient")] = 1.0
-            states, held = np.ascontiguousarray(self.states), np.ascontiguousarray(self.held.T)
+                values[program.parameter_index(placeholder, name)] = x
+            values[program.parameter_index(placeholder, "coefficient")] = 1.0
+            states, held = (
+                np.ascontiguousarray(self.states),
+                np.ascontiguousarray(self.actuator_signals.T),
+            )
             without = nominal_forces.body_forces(self.recording, states, held, values, ())
-            doubled = nominal_forces.body_forces(self.recording, states, held, values, (slot,))
+            doubled = nominal_forces.body_forces(
+                self.recording, states, held, values, (placeholder,)
+            )
             self._thrusts[side, sense] = doubled - without
         return self._thrusts[side, sense]
 

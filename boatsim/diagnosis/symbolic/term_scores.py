@@ -81,8 +81,8 @@ def _score_batch(
     squares, rows = np.zeros(len(terms)), np.zeros(len(terms))
     for fitted in recordings:
         with np.errstate(over="ignore"):
-            forces = np.stack([fitted.force(term) for term in terms], axis=2)
-            sizes = np.stack([fitted.size(term) for term in terms])
+            forces = np.stack([fitted.term_force(term) for term in terms], axis=2)
+            sizes = np.stack([fitted.term_value(term) for term in terms])
         squares += (sizes**2).sum(axis=1)
         rows += (sizes != 0.0).sum(axis=1)
         recording, levels = fitted.recording, fitted.fit.levels
@@ -93,7 +93,7 @@ def _score_batch(
             np.hstack([fitted.states, fitted.residual]),
             *fitted.smoother,
             slice(2 * nq, 3 * nq),
-            *recording.latent_force_rms(fitted.values, fitted.on, levels),
+            *recording.latent_force_rms(fitted.parameter_values, fitted.effect_switches, levels),
             levels.time_constant,
         )
         more_information, more_score = separate_information(forces, latent)
@@ -151,7 +151,7 @@ def varying_signals(
         values = np.concatenate([getattr(fitted.motion, field) for fitted in recordings])
         if np.ptp(values) > 0.0:
             speeds[name] = values
-    held = np.concatenate([fitted.held for fitted in recordings], axis=1)
+    held = np.concatenate([fitted.actuator_signals for fitted in recordings], axis=1)
     commands = []
     for name in (*vessel.actuators, *vessel.signal_sums):
         if np.ptp(held[vessel.described_signals.index(name)]) > 0.0:

@@ -14,8 +14,8 @@ from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
-from boatsim.diagnosis.symbolic.grammar import neighbours, terms
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term, unused_placeholder
+from boatsim.diagnosis.symbolic.grammar import candidate_terms, term_variants
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term, unused_placeholder
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
 from boatsim.diagnosis.symbolic.term_scores import ScoredTerm, score_terms, varying_signals
 from boatsim.physics.described_laws import SymbolicTerm
@@ -43,9 +43,9 @@ class Formula:
 
 @dataclass(frozen=True)
 class _Trial:
-    """A formula with one more term: its slot, the fit, and the term as scored."""
+    """A formula with one more term: its placeholder, the fit, and the term as scored."""
 
-    slot: str
+    placeholder: str
     fit: Fit
     scored: ScoredTerm
 
@@ -69,18 +69,18 @@ def select_terms(
     report(DESCRIBING)
     config = problem.config
     formula = Formula(best, {})
-    budget = SearchBudget(problem.filtered, config.describe.budget)
+    budget = SearchBudget(problem.work_count, config.describe.budget)
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     while len(formula.terms) < config.describe.most_terms:
-        if formula.terms and budget.spent:
+        if formula.terms and budget.is_spent:
             return replace(formula, complete=False)
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
         trials = _trials(problem, formula, ordered, refused, everywhere)
         if not trials:
             break
         trial = max(trials, key=lambda t: t.fit.evidence)
-        # the slot has the term of the last trial
-        _write_scored(problem, trial.slot, trial.scored, everywhere)
+        # the placeholder has the term of the last trial
+        _write_scored(problem, trial.placeholder, trial.scored, everywhere)
         term, found = _refined(problem, formula, trial, everywhere)
         found = converge(problem, found)
         gained = formula.fit.evidence - best.evidence
@@ -89,13 +89,13 @@ def select_terms(
         )
         if found.evidence - formula.fit.evidence < required:
             break
-        extended = Formula(found, formula.terms | {trial.slot: term})
+        extended = Formula(found, formula.terms | {trial.placeholder: term})
         fewer: dict[str, Formula] = {}
         if _replaces_effect(problem, formula, extended, fewer):
-            refused.add(family(trial.scored.term))
+            refused.add(term_family(trial.scored.term))
             continue
         formula = _pruned(problem, extended, fewer)
-        ends = budget.spent and len(formula.terms) < config.describe.most_terms
+        ends = budget.is_spent and len(formula.terms) < config.describe.most_terms
         if len(formula.terms) > 1 and not ends:
             formula = _refine_all(problem, formula, everywhere)
         count, gain = len(formula.terms), found.evidence - best.evidence
@@ -107,7 +107,7 @@ def select_terms(
 def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[ScoredTerm]:
     """Return all terms of the grammar with their approximate evidence."""
     speeds, commands = varying_signals(recordings)
-    grammar = terms(
+    grammar = candidate_terms(
         problem.program.vessel, problem.recordings, speeds, commands, problem.config.describe
     )
     return score_terms(recordings, list(grammar))
@@ -122,8 +122,8 @@ def _trials(
 ) -> list[_Trial]:
     """Fit the formula with each of the best terms."""
     best = []
-    for scored in best_of_each(ordered):
-        if scored.gain > 0.0 and family(scored.term) not in refused:
+    for scored in best_term_of_each_family(ordered):
+        if scored.gain > 0.0 and term_family(scored.term) not in refused:
             best.append(scored)
     trials = []
     for scored in best[: problem.config.describe.fitted_terms]:
@@ -132,7 +132,7 @@ def _trials(
     return trials
 
 
-def family(term: SymbolicTerm) -> Family:
+def term_family(term: SymbolicTerm) -> Family:
     """Return a key that is equal for symbolic terms which differ only in their constants.
 
     The constants are times, wavelength and threshold.
@@ -144,7 +144,7 @@ def family(term: SymbolicTerm) -> Family:
     return type(term), term.of, term.acts, term.run, *place
 
 
-def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
+def best_term_of_each_family(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     """Return the symbolic term with most evidence of each family.
 
     Terms of a family differ only in their times, wavelength or threshold.
@@ -154,27 +154,29 @@ def best_of_each(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     """
     best: dict[Family, ScoredTerm] = {}
     for scored in ordered:
-        best.setdefault(family(scored.term), scored)
+        best.setdefault(term_family(scored.term), scored)
     return list(best.values())
 
 
-def _write_scored(problem: Problem, slot: str, scored: ScoredTerm, everywhere: Recordings) -> None:
-    """Write a term into a slot, and the prior of its coefficient into the problem."""
-    set_placeholder_term(problem, slot, scored.term, everywhere)
-    problem.spreads[slot] = scored.spread
+def _write_scored(
+    problem: Problem, placeholder: str, scored: ScoredTerm, everywhere: Recordings
+) -> None:
+    """Write a term into a placeholder, and the prior of its coefficient into the problem."""
+    set_placeholder_term(problem, placeholder, scored.term, everywhere)
+    problem.spreads[placeholder] = scored.spread
 
 
 def _with_term(
     problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
 ) -> _Trial | None:
-    """Fit the formula with one more term; None if no slot is free or the simulation diverges."""
-    slot = unused_placeholder(problem, type(scored.term), list(formula.terms))
-    if not slot:
+    """Fit the formula with one more term; None without a free placeholder or if it diverges."""
+    placeholder = unused_placeholder(problem, type(scored.term), list(formula.terms))
+    if not placeholder:
         return None
-    _write_scored(problem, slot, scored, everywhere)
+    _write_scored(problem, placeholder, scored, everywhere)
     base, config = formula.fit, problem.config.fit
-    effects = (*base.effects, slot)
-    free = problem.parameters(effects)
+    effects = (*base.effects, placeholder)
+    free = problem.free_parameters(effects)
     known = {}
     for f, x in zip(base.free, base.theta, strict=True):
         known[f.effect, f.name] = x
@@ -187,21 +189,21 @@ def _with_term(
     found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
     if not np.isfinite(found.evidence):
         return None
-    return _Trial(slot, fit(problem, found), scored)
+    return _Trial(placeholder, fit(problem, found), scored)
 
 
 def _refined(
     problem: Problem, formula: Formula, trial: _Trial, everywhere: Recordings
 ) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of the newest term; return the term and the fit with it."""
-    config, slot, found = problem.config.describe, trial.slot, trial.fit
+    config, placeholder, found = problem.config.describe, trial.placeholder, trial.fit
     scored = trial.scored
-    if not neighbours(scored.term, problem.recordings, config.coarse_refinement[0], config):
+    if not term_variants(scored.term, problem.recordings, config.coarse_refinement[0], config):
         return scored.term, found
     recordings, best = fitted_recordings(problem, formula.fit), scored
     for step in config.coarse_refinement:
         for _ in range(config.refinement_moves):
-            near = neighbours(best.term, problem.recordings, step, config)
+            near = term_variants(best.term, problem.recordings, step, config)
             moved = score_terms(recordings, near)
             if not moved or moved[0].gain <= best.gain:
                 break
@@ -211,12 +213,12 @@ def _refined(
         if better and better.fit.evidence > found.evidence:
             scored, found = best, better.fit
         else:
-            _write_scored(problem, slot, scored, everywhere)
-    return _refined_by_filter(problem, slot, scored.term, found, everywhere)
+            _write_scored(problem, placeholder, scored, everywhere)
+    return _refined_by_filter(problem, placeholder, scored.term, found, everywhere)
 
 
 def _refined_by_filter(
-    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+    problem: Problem, placeholder: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
 ) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of a term with the filter, whose likelihood is exact.
 
@@ -224,15 +226,15 @@ def _refined_by_filter(
     force with a longer time constant must be stronger.
     """
     config = problem.config.describe
-    if not neighbours(term, problem.recordings, config.fine_refinement[0], config):
+    if not term_variants(term, problem.recordings, config.fine_refinement[0], config):
         return term, found
     for _ in range(config.refinement_turns):
-        moved = _moved(problem, slot, term, found, everywhere)
+        moved = _moved(problem, placeholder, term, found, everywhere)
         if moved == term:
             break
         again = fit(problem, found)
         if not again.evidence > found.evidence:
-            set_placeholder_term(problem, slot, term, everywhere)
+            set_placeholder_term(problem, placeholder, term, everywhere)
             break
         term, found = moved, again
     return term, found
@@ -241,34 +243,36 @@ def _refined_by_filter(
 def _refine_all(problem: Problem, formula: Formula, everywhere: Recordings) -> Formula:
     """Refine all terms in the presence of the others, of which they may have explained a part."""
     refined, found = dict(formula.terms), formula.fit
-    for slot, term in formula.terms.items():
-        refined[slot], found = _refined_by_filter(problem, slot, term, found, everywhere)
+    for placeholder, term in formula.terms.items():
+        refined[placeholder], found = _refined_by_filter(
+            problem, placeholder, term, found, everywhere
+        )
     if found is formula.fit:
         return formula
     return Formula(converge(problem, found), refined)
 
 
 def _moved(
-    problem: Problem, slot: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
+    problem: Problem, placeholder: str, term: SymbolicTerm, found: Fit, everywhere: Recordings
 ) -> SymbolicTerm:
     """Move a term to the maximum of the likelihood with all fitted parameters held."""
     config, on = problem.config.describe, problem.program.effect_switches(found.effects)
 
-    def likelihood(candidate: SymbolicTerm) -> float:
-        set_placeholder_term(problem, slot, candidate, everywhere)
+    def log_likelihood_of_term(candidate: SymbolicTerm) -> float:
+        set_placeholder_term(problem, placeholder, candidate, everywhere)
         return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
-    best = likelihood(term)
+    best = log_likelihood_of_term(term)
     for step in config.fine_refinement:
         for _ in range(config.refinement_moves):
-            near = neighbours(term, problem.recordings, step, config)
-            scores = list(map(likelihood, near))
+            near = term_variants(term, problem.recordings, step, config)
+            scores = list(map(log_likelihood_of_term, near))
             # the last one of equally likely neighbours
             last = max(range(len(near)), key=lambda i: (scores[i], i))
             if not scores[last] > best + config.least_move_gain:
                 break
             term, best = near[last], scores[last]
-    set_placeholder_term(problem, slot, term, everywhere)
+    set_placeholder_term(problem, placeholder, term, everywhere)
     return term
 
 
@@ -317,5 +321,5 @@ def refit_without_term(problem: Problem, formula: Formula, name: str) -> Formula
         name: Name of the term's placeholder effect, or of the effect.
     """
     found = converge(problem, remove_effect(problem, formula.fit, name))
-    kept = {slot: term for slot, term in formula.terms.items() if slot != name}
+    kept = {placeholder: term for placeholder, term in formula.terms.items() if placeholder != name}
     return replace(formula, fit=found, terms=kept)

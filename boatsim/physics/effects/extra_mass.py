@@ -163,7 +163,7 @@ class Payload(CoefficientRelease):
         """
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
-    def shift_weights(self, vessel: Boat) -> dict[str, float]:
+    def changes_per_unit(self, vessel: Boat) -> dict[str, float]:
         """Return by how much each moment of inertia changes per unit of added mass [m^2].
 
         The radii of gyration do not change.

@@ -11,7 +11,7 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the force of springs between the hull and the ground.
+    """Return the restoring force of springs or cables between the hull and a fixed point.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].

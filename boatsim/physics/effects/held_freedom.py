@@ -15,7 +15,7 @@ STIFF = 4.0
 
 
 @njit(inline="always")
-def clamp(held: float, inertia: float, place: float, speed: float, frequency: float) -> float:
+def clamp_force(held: float, inertia: float, place: float, speed: float, frequency: float) -> float:
     """Return the force of a critically damped spring that holds one coordinate at zero.
 
     Args:
@@ -44,17 +44,17 @@ def law(m: Any, q: Any) -> Wrench:
     north = m.cos_psi * m.u - m.sin_psi * aside
     east = m.sin_psi * m.u + m.cos_psi * aside
     w = q.frequency
-    to_north = clamp(q.surge, q.mass, m.x, north, w)
-    to_east = clamp(q.sway, q.mass, m.y, east, w)
-    down = clamp(q.heave, q.mass, m.z, sinking, w)
+    to_north = clamp_force(q.surge, q.mass, m.x, north, w)
+    to_east = clamp_force(q.sway, q.mass, m.y, east, w)
+    down = clamp_force(q.heave, q.mass, m.z, sinking, w)
     level = m.cos_psi * to_east - m.sin_psi * to_north
     return wrench(
         X=m.cos_psi * to_north + m.sin_psi * to_east,
         Y=c * level + s * down,
         Z=c * down - s * level,
-        K=clamp(q.roll, q.roll_inertia, m.phi, m.p, w),
-        M=clamp(q.pitch, q.yaw_inertia, m.theta, m.q, w),
-        N=clamp(q.yaw, q.yaw_inertia, m.psi, m.r, w),
+        K=clamp_force(q.roll, q.roll_inertia, m.phi, m.p, w),
+        M=clamp_force(q.pitch, q.yaw_inertia, m.theta, m.q, w),
+        N=clamp_force(q.yaw, q.yaw_inertia, m.psi, m.r, w),
     )
 
 

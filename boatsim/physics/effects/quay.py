@@ -14,7 +14,7 @@ LARGEST_RATE = 4.0  # limits the share of the force by the speed, so that a fit 
 
 
 @njit(inline="always")
-def indentation(depth: float, soft: float) -> float:
+def fender_compression(depth: float, soft: float) -> float:
     """Return by how much hull or fender is compressed [m], smooth at the begin of the contact.
 
     Args:
@@ -51,7 +51,7 @@ def law(m: Any, q: Any) -> Wrench:
     depth = wall - (to_north * m.x + to_east * m.y - reach)
     speed = -(ahead * (m.u - y * m.r) + aside * (m.v + x * m.r))  # [m/s] into the wall
     damping = min(max(1.0 + q.damping * speed, 0.0), LARGEST_RATE)
-    force = q.stiffness * indentation(depth, 2.0 * SOFT * q.half_length) * damping
+    force = q.stiffness * fender_compression(depth, 2.0 * SOFT * q.half_length) * damping
     X, Y = force * ahead, force * aside
     return wrench(X=X, Y=Y, N=x * Y - y * X)
 

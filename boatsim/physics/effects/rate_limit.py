@@ -15,7 +15,7 @@ from boatsim.physics.base import (
     preset_effect,
     segment_mean,
 )
-from boatsim.physics.effects.servo import NONE, approach_command, ramp_time
+from boatsim.physics.effects.servo import NONE, ramp_time, servo_motion
 
 SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
 NEVER = 1e6  # [1/s] rate without a limit
@@ -46,7 +46,7 @@ def transform_signal(
     if q.rate >= q.instant:
         memory[at] = x.end
         return x
-    return approach_command(segment_mean(x), memory, at, dt, q.rate, q.lag)
+    return servo_motion(segment_mean(x), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")

@@ -28,9 +28,10 @@ def ahead_thrust_fraction(s: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Return thrust and steering moment of an idling water jet with a deflecting bucket.
+    """Return thrust and steering moment of a water jet with a reversing bucket, engine idling.
 
-    Both are proportional to the share of the jet that points astern.
+    Both are proportional to the share of the jet that points astern: cos(2 beta) at the bucket
+    angle beta, and the leak, which the bucket does not deflect.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -46,9 +47,10 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class ReversingJet(Force):
-    """Idling water jet with a deflecting bucket.
+    """Water jet with a reversing bucket while the engine idles.
 
-    A positive nozzle angle turns to starboard going ahead.
+    The bucket deflects the jet ahead as it is lowered; `leak` is the share of the jet that it does
+    not deflect. A positive nozzle angle turns to starboard going ahead.
 
     X = T_0 (cos 2 beta + leak),  N = N_delta (cos 2 beta + leak) delta
 

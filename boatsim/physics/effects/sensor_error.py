@@ -155,7 +155,7 @@ def instrument_formula(channel: InstrumentChannel, freed: str) -> str:
     return rf"{symbol}_\mathrm{{recorded}}(t) = {laws[freed]}"
 
 
-def special_case(
+def preset_arguments(
     channel: InstrumentChannel,
     freed: str,
     about: ParameterChanges,
@@ -197,7 +197,7 @@ def gain_error_preset(channel: InstrumentChannel, with_rate: bool = False) -> di
         "spread": GAIN_SPREAD,
         "in_per_cent": f"the recorded {channel.words} is {{larger}} than the true one",
     }
-    settings = special_case(channel, "gain_fraction", about, "is too small", with_rate)
+    settings = preset_arguments(channel, "gain_fraction", about, "is too small", with_rate)
     above = f"the recorded {channel.words} is too large (not physics)"
     return settings | {"words_above": above}
 
@@ -211,7 +211,7 @@ def offset_error_preset(channel: InstrumentChannel) -> dict[str, Any]:
         "low": -channel.largest,
         "high": channel.largest,
     }
-    return special_case(channel, "offset", about, "has a constant error")
+    return preset_arguments(channel, "offset", about, "has a constant error")
 
 
 def drift_error_preset(channel: InstrumentChannel, with_rate: bool = False) -> dict[str, Any]:
@@ -226,7 +226,7 @@ def drift_error_preset(channel: InstrumentChannel, with_rate: bool = False) -> d
         "low": -channel.largest,
         "high": channel.largest,
     }
-    return special_case(channel, "drift", about, "has an error that grows with time", with_rate)
+    return preset_arguments(channel, "drift", about, "has an error that grows with time", with_rate)
 
 
 def delay_error_preset(channel: InstrumentChannel) -> dict[str, Any]:
@@ -238,7 +238,7 @@ def delay_error_preset(channel: InstrumentChannel) -> dict[str, Any]:
         "words": f"delay of the {channel.words}",
         "spread": DELAY_SPREAD,
     }
-    return special_case(channel, "delay", about, "is older than its rate in the same row", True)
+    return preset_arguments(channel, "delay", about, "is older than its rate in the same row", True)
 
 
 SurgeVelocityGain = preset_effect(

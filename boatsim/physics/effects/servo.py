@@ -35,7 +35,7 @@ def ramp_time(gap: float, rate: float, lag: float) -> float:
 
 
 @njit(inline="always")
-def approach_command(
+def servo_motion(
     goal: float, memory: Array, at: int, dt: float, rate: float, lag: float
 ) -> SignalSegment:
     """Return how a servo moves towards a constant command over one step.
@@ -91,9 +91,7 @@ def transform_signal(
     Returns:
         The signal of the actuator after the effect, over the same step.
     """
-    return approach_command(
-        min(max(segment_mean(x), -q.range), q.range), memory, at, dt, q.rate, q.lag
-    )
+    return servo_motion(min(max(segment_mean(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")

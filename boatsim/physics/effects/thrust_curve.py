@@ -17,7 +17,7 @@ MAX_POINTS = 8
 
 
 @njit(inline="always")
-def between(x: float, x0: float, x1: float, y0: float, y1: float) -> float:
+def interpolate_linearly(x: float, x0: float, x1: float, y0: float, y1: float) -> float:
     """Return the value at x of the straight line through (x0, y0) and (x1, y1).
 
     Args:
@@ -40,18 +40,18 @@ def table_thrust(x: float, q: Any) -> float:
     """
     x = min(max(x, q.command_1), q.command_8)
     if x <= q.command_2:
-        return between(x, q.command_1, q.command_2, q.thrust_1, q.thrust_2)
+        return interpolate_linearly(x, q.command_1, q.command_2, q.thrust_1, q.thrust_2)
     if x <= q.command_3:
-        return between(x, q.command_2, q.command_3, q.thrust_2, q.thrust_3)
+        return interpolate_linearly(x, q.command_2, q.command_3, q.thrust_2, q.thrust_3)
     if x <= q.command_4:
-        return between(x, q.command_3, q.command_4, q.thrust_3, q.thrust_4)
+        return interpolate_linearly(x, q.command_3, q.command_4, q.thrust_3, q.thrust_4)
     if x <= q.command_5:
-        return between(x, q.command_4, q.command_5, q.thrust_4, q.thrust_5)
+        return interpolate_linearly(x, q.command_4, q.command_5, q.thrust_4, q.thrust_5)
     if x <= q.command_6:
-        return between(x, q.command_5, q.command_6, q.thrust_5, q.thrust_6)
+        return interpolate_linearly(x, q.command_5, q.command_6, q.thrust_5, q.thrust_6)
     if x <= q.command_7:
-        return between(x, q.command_6, q.command_7, q.thrust_6, q.thrust_7)
-    return between(x, q.command_7, q.command_8, q.thrust_7, q.thrust_8)
+        return interpolate_linearly(x, q.command_6, q.command_7, q.thrust_6, q.thrust_7)
+    return interpolate_linearly(x, q.command_7, q.command_8, q.thrust_7, q.thrust_8)
 
 
 @njit(inline="always")

@@ -26,8 +26,8 @@ SMOOTH = 1.5
 
 
 @njit(inline="always")
-def store(act: Array, own: Any, first: float, second: float) -> None:
-    """Store the states of the two lags as results.
+def store_lag_states(act: Array, own: Any, first: float, second: float) -> None:
+    """Store the states of the two lags of the mean square among the actuator signals.
 
     Args:
         act: Values of the signals.
@@ -40,7 +40,7 @@ def store(act: Array, own: Any, first: float, second: float) -> None:
 
 
 @njit(inline="always")
-def lag_step(x: float, first: float, second: float, ratio: float) -> Any:
+def advance_two_lags(x: float, first: float, second: float, ratio: float) -> Any:
     """Advance two equal lags in series by a step under a constant input, exactly.
 
     Args:
@@ -76,11 +76,11 @@ def filter_signal(
     mean = (x.begin + 4.0 * x.middle + x.end) / 6.0
     half = 0.5 * dt / q.smoothing
     first, second = memory[at], memory[at + 1]
-    store(act, own, first, second)
-    first, second = lag_step(mean * mean, first, second, half)
-    store(act, held + own, first, second)
-    first, second = lag_step(mean * mean, first, second, half)
-    store(act, 2 * held + own, first, second)
+    store_lag_states(act, own, first, second)
+    first, second = advance_two_lags(mean * mean, first, second, half)
+    store_lag_states(act, held + own, first, second)
+    first, second = advance_two_lags(mean * mean, first, second, half)
+    store_lag_states(act, 2 * held + own, first, second)
     memory[at], memory[at + 1] = first, second
 
 

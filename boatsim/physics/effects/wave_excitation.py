@@ -30,7 +30,7 @@ WIDE = 8.0
 
 
 @njit(inline="always")
-def filter_step(
+def advance_butterworth_filter(
     x: SignalSegment, a: float, b: float, c: float, w: float, dt: float
 ) -> tuple[float, float, float]:
     """Advance a Butterworth filter of third order by a step, by Runge and Kutta.
@@ -63,7 +63,7 @@ def filter_step(
 
 
 @njit(inline="always")
-def ramp_value(level: float, target: float, slope: float, after: float) -> float:
+def bounded_ramp(level: float, target: float, slope: float, after: float) -> float:
     """Return a level that moves towards a target and stops there.
 
     Args:
@@ -79,7 +79,7 @@ def ramp_value(level: float, target: float, slope: float, after: float) -> float
 
 
 @njit(inline="always")
-def follow_sample(x: float, memory: Array, at: Any, dt: float) -> None:
+def start_ramp_to_sample(x: float, memory: Array, at: Any, dt: float) -> None:
     """Start a ramp to a new sample of the input, as long as the last one was held.
 
     Samples that arrive at one rate are thus interpolated linearly.
@@ -122,30 +122,30 @@ def filter_signal(
         a, b, c = x.end, 0.0, 0.0
         memory[ramp], memory[ramp + 1], memory[ramp + 2], memory[ramp + 3] = x.end, x.end, 0.0, 0.0
         for row in range(3):
-            store(act, row * held + own, a, b, c)
+            store_wave_kinematics(act, row * held + own, a, b, c)
     else:
-        follow_sample(x.begin, memory, ramp, dt)
+        start_ramp_to_sample(x.begin, memory, ramp, dt)
         level, target, slope = memory[ramp], memory[ramp + 1], memory[ramp + 2]
         count = 2 * max(1, ceil(0.5 * w * dt / SUBSTEP))
         part = dt / count
-        store(act, own, a, b, c)
+        store_wave_kinematics(act, own, a, b, c)
         for i in range(count):
             u = SignalSegment(
-                ramp_value(level, target, slope, i * part),
-                ramp_value(level, target, slope, (i + 0.5) * part),
-                ramp_value(level, target, slope, (i + 1.0) * part),
+                bounded_ramp(level, target, slope, i * part),
+                bounded_ramp(level, target, slope, (i + 0.5) * part),
+                bounded_ramp(level, target, slope, (i + 1.0) * part),
             )
-            a, b, c = filter_step(u, a, b, c, w, part)
+            a, b, c = advance_butterworth_filter(u, a, b, c, w, part)
             if 2 * (i + 1) == count:
-                store(act, held + own, a, b, c)
-        store(act, 2 * held + own, a, b, c)
-        memory[ramp] = ramp_value(level, target, slope, dt)
+                store_wave_kinematics(act, held + own, a, b, c)
+        store_wave_kinematics(act, 2 * held + own, a, b, c)
+        memory[ramp] = bounded_ramp(level, target, slope, dt)
     memory[at], memory[at + 1], memory[at + 2] = a, b, c
 
 
 @njit(inline="always")
-def store(act: Array, own: Any, a: float, b: float, c: float) -> None:
-    """Store elevation, rate and acceleration.
+def store_wave_kinematics(act: Array, own: Any, a: float, b: float, c: float) -> None:
+    """Store elevation, rate and acceleration of the filtered wave among the actuator signals.
 
     Args:
         act: Values of the signals.
@@ -329,10 +329,10 @@ class WaveExcitation(FilteredSignal, Force):
         reference = natural
         if self.has_value("reference"):
             reference = self.reference
-        return found | box_pressure(vessel, reference, self.density, self.side)
+        return found | box_pressure_coefficients(vessel, reference, self.density, self.side)
 
 
-def box_pressure(
+def box_pressure_coefficients(
     vessel: Boat, frequency: float, density: float, side: float = 1.0
 ) -> dict[str, float]:
     """Return the coefficients of the pressure of an undisturbed beam wave on a box, deep water.
@@ -350,7 +350,7 @@ def box_pressure(
     squared = frequency * frequency
     # attenuation alpha - beta w^2 about the reference, hence an elevation and an acceleration
     beyond = squared * (1.0 + SLOPE)
-    at, after = attenuation(squared, vessel), attenuation(beyond, vessel)
+    at, after = pressure_attenuation(squared, vessel), pressure_attenuation(beyond, vessel)
     beta = (at - after) / (beyond - squared)
     alpha = at + beta * squared
     k = squared / GRAVITY
@@ -372,7 +372,7 @@ def box_pressure(
     }
 
 
-def attenuation(squared: float, vessel: Boat) -> float:
+def pressure_attenuation(squared: float, vessel: Boat) -> float:
     """Return the mean pressure on the bottom of a box over that at the surface amidships.
 
     Args:

@@ -98,7 +98,7 @@ class CodeLines:
         """
         self.text.append(line)
 
-    def assign(self, called: str, value: SymbolicSum) -> SymbolicSum:
+    def generate_assignment(self, called: str, value: SymbolicSum) -> SymbolicSum:
         """Generate an assignment of a symbolic expression to a variable; return the variable.
 
         Zero, one or a single variable needs no assignment and is returned unchanged.
@@ -119,4 +119,4 @@ class CodeLines:
             prefix: Name of the variables without the number.
             values: The symbolic expressions.
         """
-        return [self.assign(f"{prefix}{i}", value) for i, value in enumerate(values)]
+        return [self.generate_assignment(f"{prefix}{i}", value) for i, value in enumerate(values)]

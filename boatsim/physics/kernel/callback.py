@@ -68,7 +68,7 @@ def compile_passive_callback(offsets: dict[str, int], size: int) -> Any:
     words = max(offsets.values()) + 1
     n = size - 3 * HELD - 2 - K
 
-    def called(model, data):  # type: ignore[no-untyped-def]
+    def add_passive_forces_to_mujoco(model, data):  # type: ignore[no-untyped-def]
         if carray(model, (of_size + 1,), np.int32)[of_size] != size:
             return
         w = carray(data, (words,), np.int64)
@@ -81,4 +81,4 @@ def compile_passive_callback(offsets: dict[str, int], size: int) -> Any:
         add_passive_forces(t, q, qd, user, n, f, M)
         factor_mass(model, data)
 
-    return compile_callback(called)
+    return compile_callback(add_passive_forces_to_mujoco)

@@ -159,18 +159,18 @@ class EquationWriter:
             [sp * ct, cp * cf + sp * st * sf, sp * st * cf - cp * sf],
             [-st, ct * sf, ct * cf],
         ]
-        R = [[lines.assign(f"R{i}{j}", R[i][j]) for j in LINEAR] for i in LINEAR]
+        R = [[lines.generate_assignment(f"R{i}{j}", R[i][j]) for j in LINEAR] for i in LINEAR]
         T = [
             [ONE, ZERO, -st],
-            [ZERO, cf, lines.assign("T12", ct * sf)],
-            [ZERO, -sf, lines.assign("T22", ct * cf)],
+            [ZERO, cf, lines.generate_assignment("T12", ct * sf)],
+            [ZERO, -sf, lines.generate_assignment("T22", ct * cf)],
         ]
         J = [[ZERO] * 6 for _ in range(6)]
         for i in LINEAR:
             for j in LINEAR:
                 J[i][j], J[3 + i][3 + j] = R[j][i], T[i][j]
         nu = [
-            lines.assign(
+            lines.generate_assignment(
                 "uvwpqr"[i] + "_", sum_expressions(J[i][j] * self.rate_symbol(j) for j in self.free)
             )
             for i in range(6)
@@ -191,7 +191,9 @@ class EquationWriter:
         if current and {0, 1} & set(self.free):
             lines.append_line("north, east = water_velocity(p, on)")
             water = [
-                lines.assign(f"{n}_water", R[0][i] * symbol("north") + R[1][i] * symbol("east"))
+                lines.generate_assignment(
+                    f"{n}_water", R[0][i] * symbol("north") + R[1][i] * symbol("east")
+                )
                 for i, n in enumerate("uvw")
             ]
         return Kinematics(R, J, nu, turning, drift, water)
@@ -283,7 +285,7 @@ class EquationWriter:
             found = self.generate_factored_solution(lines, right, "")
             lines.append_line(f"return {self.tuple_text(found)}")
             return lines.text
-        pushed = {i: lines.assign(f"load{i}", load[i]) for i in self.free}
+        pushed = {i: lines.generate_assignment(f"load{i}", load[i]) for i in self.free}
         nudot = {
             i: sum_expressions(mass_matrix_entry(WHOLE, i, j) * pushed[j] for j in self.free)
             for i in self.free
@@ -291,7 +293,7 @@ class EquationWriter:
         for i in LINEAR:
             if i in nudot:  # acceleration over ground along the axes
                 nudot[i] = nudot[i] - frame.drift[i]
-        moved = {i: lines.assign(f"a{i}", a) for i, a in nudot.items()}
+        moved = {i: lines.generate_assignment(f"a{i}", a) for i, a in nudot.items()}
         joints = self.generate_joint_accelerations(lines, frame, moved, moving=True)
         lines.append_line(f"return {self.tuple_text(joints)}")
         return lines.text
@@ -456,8 +458,8 @@ class EquationWriter:
                     lines.append_line(f"J[{i}, {b}] = {frame.J[i][j]}")
         return lines.text
 
-    def expected_measurement_level_code(self) -> list[str]:
-        """Return the source lines of the generated function `expected_measurement_level`.
+    def expected_measurement_of_level_hull_code(self) -> list[str]:
+        """Return the source lines of the generated function `expected_measurement_of_level_hull`.
 
         It computes the expected value of a measured position or velocity for level axes.
         """
@@ -498,7 +500,7 @@ class EquationWriter:
         load = {}
         for a in needed:
             bent = dot_product(added[a], frame.drift)
-            load[a] = lines.assign(
+            load[a] = lines.generate_assignment(
                 f"load{a}",
                 symbol(f"f.{Wrench._fields[a]}") + self.current_acceleration_force(frame, a) - bent,
             )
@@ -508,7 +510,7 @@ class EquationWriter:
         mass = [[ZERO] * 6 for _ in range(6)]
         for a in needed:
             for c in range(a, 6):
-                mass[a][c] = mass[c][a] = lines.assign(f"M{a}{c}", added[a][c])
+                mass[a][c] = mass[c][a] = lines.generate_assignment(f"M{a}{c}", added[a][c])
         for b, i in enumerate(order):
             for d, j in enumerate(order[: b + 1]):
                 value = ZERO

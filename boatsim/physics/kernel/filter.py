@@ -62,7 +62,7 @@ from .motion import (
     K,
     acceleration_jacobian,
     acceleration_per_force,
-    expected_measurement_level,
+    expected_measurement_of_level_hull,
     pose_and_velocities,
     step_in_place,
 )
@@ -375,7 +375,7 @@ def expected_measurement(
     if not HULL_FIXED_AXES and not has_measurement_errors(on):
         for j in range(NZ):
             row[j] = 0.0
-        return expected_measurement_level(z, code, row)
+        return expected_measurement_of_level_hull(z, code, row)
     copy_vector(slope, row[:NY])
     return predicted_measurement(z, t, code, p, on)
 

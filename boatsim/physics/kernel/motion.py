@@ -48,7 +48,7 @@ def acceleration_jacobian(
 
 
 def acceleration_per_force(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
-    """Write the derivatives of the vessel's accelerations by a body force to A[row:, column:]."""
+    """Write d(acceleration)/d(body force) into the filter's system matrix A, at row and column."""
 
 
 def instrument_readings(
@@ -66,7 +66,7 @@ def pose_and_velocities(s: Any) -> MeasuredMotion:
     raise NotImplementedError
 
 
-def expected_measurement_level(s: Array, code: int, row: Array) -> float:
+def expected_measurement_of_level_hull(s: Array, code: int, row: Array) -> float:
     """Return the expected value of one measured channel for axes that stay level.
 
     Fills its row of the measurement matrix.

@@ -101,7 +101,7 @@ def acceleration_jacobian_code(n: int) -> list[str]:
     ]
 
 
-def module_head(w: EquationWriter) -> list[str]:
+def motion_module_head(w: EquationWriter) -> list[str]:
     """Return the lines with imports and constants of the generated module `motion.py`."""
     shows = tuple(w.free + [6 + i for i in w.free])
     axes = ", ".join(AXES[i] for i in w.free)
@@ -193,9 +193,9 @@ def observation_functions(w: EquationWriter) -> list[str]:
             "inlined",
         ),
         function_text(
-            "expected_measurement_level(s, code, row)",
+            "expected_measurement_of_level_hull(s, code, row)",
             "Expected value of one measured channel; fills its row of the measurement matrix.",
-            w.expected_measurement_level_code(),
+            w.expected_measurement_of_level_hull_code(),
             "inlined",
         ),
         function_text(
@@ -215,5 +215,5 @@ def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
         centred: Whether the mass centre is the origin of motion.
     """
     w = EquationWriter(dof, centred)
-    text = [*module_head(w), *dynamics_functions(w), *observation_functions(w)]
+    text = [*motion_module_head(w), *dynamics_functions(w), *observation_functions(w)]
     return "\n".join(text)

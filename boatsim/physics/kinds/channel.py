@@ -192,7 +192,7 @@ class ChannelEffect(EffectKind):
                 yield f"left = min(left, {site.text('time_to_discontinuity', 'x', 'memory', at)})"
             if not any(
                 _has_discontinuities(program, i, station.channel)
-                for i in program.later_effects(number)
+                for i in program.indices_of_later_effects(number)
             ):
                 return
             if type(effect).present_output is not None:

@@ -455,19 +455,19 @@ class ProgramLayout(Protocol):
     def memory_offset(self, number: int, actuator: str) -> int:
         """Return the index in the program's memory array of an effect's state for one actuator."""
 
-    def history_place(self, number: int) -> int:
+    def history_index(self, number: int) -> int:
         """Return the index in `law_signals` of the past signal value that an effect uses.
 
         It is 0 for an effect that uses none. An effect with several values has consecutive ones.
         """
 
-    def filtered_source(self, number: int) -> int:
+    def filtered_signal_index(self, number: int) -> int:
         """Return the index in `law_signals` of the signal that an effect passes through a filter.
 
         It is that of the effect's first role.
         """
 
-    def later_effects(self, number: int) -> Sequence[int]:
+    def indices_of_later_effects(self, number: int) -> Sequence[int]:
         """Return the indices of the effects that are evaluated after a given effect."""
 
 

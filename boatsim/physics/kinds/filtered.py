@@ -49,8 +49,8 @@ class FilteredSignal(EffectKind):
         if part is TIME_TO_DISCONTINUITY:
             yield f"left = min(left, longest_filter_step{number}({values}))"
             return
-        source = program.filtered_source(number)
-        own = program.history_place(number)
+        source = program.filtered_signal_index(number)
+        own = program.history_index(number)
         at = f"np.int64({program.memory_offset(number, WHOLE)})"
         rows = f"act[{source}], act[held + {source}], act[2 * held + {source}]"
         places = f"act, held, np.int64({own}), memory, {at}"

@@ -43,7 +43,7 @@ class SignalHistory(EffectKind):
         if (
             station.channel != WHOLE
             or part not in (ADVANCE, TIME_TO_DISCONTINUITY)
-            or not (own := program.history_place(number))
+            or not (own := program.history_index(number))
         ):
             return
         values = program.law_calls(number)[0].values

@@ -59,7 +59,7 @@ class CoefficientRelease(Effect):
         Args:
             vessel: Vessel on which the effect acts.
         """
-        found, weights = [], self.shift_weights(vessel)
+        found, weights = [], self.changes_per_unit(vessel)
         for name, about in type(self).params().items():
             for place in (p for places in about.releases for p in _existing_places(places, vessel)):
                 owner, _, key = place.partition(".")
@@ -70,7 +70,7 @@ class CoefficientRelease(Effect):
                 ]
         return found
 
-    def shift_weights(self, vessel: Boat) -> dict[str, float]:
+    def changes_per_unit(self, vessel: Boat) -> dict[str, float]:
         """Return by how much each number of the vessel changes per unit of an additive parameter.
 
         Numbers that are not listed change by the parameter itself (weight 1). Empty unless a

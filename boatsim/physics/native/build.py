@@ -25,7 +25,7 @@ class NoCompiler(BadInput):
     """Raised where no C compiler can make a library."""
 
 
-def compiler() -> str:
+def compiler_path() -> str:
     """Return the path of the C compiler: that of the variable CC, else `cc`.
 
     Raises:
@@ -52,8 +52,8 @@ def load_library(folder: Path, name: str, source: Callable[[], str]) -> ctypes.C
         NoCompiler: There is no C compiler, or it fails.
         NotTranslatable: A law has no C form.
     """
-    command = compiler()
-    about = "\n".join([command, *FLAGS, *EXACT, processor(), _digest_of_translator()])
+    command = compiler_path()
+    about = "\n".join([command, *FLAGS, *EXACT, processor_features(), _digest_of_translator()])
     path = folder / f"{name}_{hashlib.sha256(about.encode()).hexdigest()[:16]}.so"
     if not _is_sound(path):
         compile_library(source(), path, command)
@@ -61,7 +61,7 @@ def load_library(folder: Path, name: str, source: Callable[[], str]) -> ctypes.C
 
 
 @cache
-def processor() -> str:
+def processor_features() -> str:
     """Return what the processor can do: a library of one processor may not run on another."""
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text().splitlines():

@@ -16,7 +16,7 @@ from boatsim.physics.native.kinds import (
     Kind,
     Scalar,
     Struct,
-    leaves,
+    scalar_and_array_kinds,
 )
 from boatsim.physics.native.translate import Translation
 
@@ -25,7 +25,7 @@ ITEMS = {REAL: np.dtype(np.float64), WHOLE: np.dtype(np.int64)}
 
 
 def argument_kinds(program: Translation, entry: Entry) -> list[Kind]:
-    """Return the kinds of the arguments of a function, with structs for its named tuples.
+    """Return the kinds of a C function's arguments, with structs for its named tuples.
 
     Args:
         program: The program to which the structs belong.
@@ -34,7 +34,7 @@ def argument_kinds(program: Translation, entry: Entry) -> list[Kind]:
     kinds: list[Kind] = []
     for kind in entry.arguments:
         if kind in RECORDS:
-            kinds.append(program.struct(kind, RECORDS[kind]))
+            kinds.append(program.declare_struct(kind, RECORDS[kind]))
         else:
             kinds.append(kind)
     return kinds
@@ -60,7 +60,7 @@ class NativeFunction:
         function.argtypes, function.restype = [ctypes.c_char_p, ctypes.c_void_p], ctypes.c_double
         self.function, self._result = function, entry.result
         self._kinds = argument_kinds(Translation(), entry)
-        every = chain.from_iterable(map(leaves, self._kinds))
+        every = chain.from_iterable(map(scalar_and_array_kinds, self._kinds))
         self._pack = struct.Struct("=" + "".join(map(_format, every))).pack
 
     @property
@@ -77,17 +77,17 @@ class NativeFunction:
         Raises:
             TypeError: An array is not contiguous, or has another type or number of dimensions.
         """
-        return self._run(self.packed(*given))
+        return self._run(self.pack_arguments(*given))
 
-    def packed(self, *given: Any) -> bytes:
+    def pack_arguments(self, *given: Any) -> bytes:
         """Return arguments as words. The arrays among them must live as long as these are used."""
         flat: list[Any] = []
         for kind, value in zip(self._kinds, given, strict=True):
             _flatten(kind, value, flat)
         return self._pack(*flat)
 
-    def prepared(self, *given: Any) -> Callable[..., Any]:
-        """Return a function of the floats in whose place `...` is given; the others are fixed.
+    def partial(self, *given: Any) -> Callable[..., Any]:
+        """Bind arguments; return a function of the floats left open as `...`.
 
         A call costs a fraction of an ordinary one. The function must not be called by two threads
         at the same time.
@@ -110,7 +110,7 @@ class NativeFunction:
         results = np.empty(MOST_RESULTS)
         out = results.ctypes.data
 
-        def call(*numbers: float) -> Any:
+        def call_function(*numbers: float) -> Any:
             for place, number in zip(free, numbers, strict=True):
                 floats[place] = number
             if result is None or not several:
@@ -118,8 +118,8 @@ class NativeFunction:
             found = int(function(address, out))
             return result(*results[:found].tolist())
 
-        call.__dict__["arrays"] = given  # they must live as long as the addresses are used
-        return call
+        call_function.__dict__["arrays"] = given  # they must live as long as the addresses are used
+        return call_function
 
     def _run(self, words: bytes) -> Any:
         if self._result is None:
@@ -174,8 +174,8 @@ def _address(array: Any) -> int:
         return int(array.ctypes.data)
 
 
-def pack_record(code: Any, record: Any) -> Any:
-    """Return a named tuple of arrays in a form that makes calls of a program's functions faster.
+def pack_named_tuple(code: Any, record: Any) -> Any:
+    """Return a named tuple of arrays with their addresses looked up, for faster calls of C.
 
     Args:
         code: The program's functions, from C or from numba.
@@ -184,12 +184,12 @@ def pack_record(code: Any, record: Any) -> Any:
     if not isinstance(code.advance_actuators, NativeFunction):
         return record
     words: list[Any] = []
-    _flatten(Translation().struct(type(record), RECORDS[type(record)]), record, words)
+    _flatten(Translation().declare_struct(type(record), RECORDS[type(record)]), record, words)
     return PackedRecord(words, record)
 
 
-def prepare_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
-    """Return a function of a program as a function of those numbers for which `...` is given.
+def partial_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
+    """Bind arguments of a program's function; return a function of the numbers left open as `...`.
 
     Args:
         code: The program's functions, from C or from numba.
@@ -198,16 +198,16 @@ def prepare_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
     """
     function = getattr(code, name)
     if isinstance(function, NativeFunction):
-        return function.prepared(*given)
+        return function.partial(*given)
     free = _places_of_numbers(given)
 
-    def call(*numbers: float) -> Any:
+    def call_function(*numbers: float) -> Any:
         full = list(given)
         for place, number in zip(free, numbers, strict=True):
             full[place] = number
         return function(*full)
 
-    return call
+    return call_function
 
 
 def _places_of_numbers(given: Sequence[Any]) -> list[int]:

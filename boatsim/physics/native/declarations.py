@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.native.kinds import REAL, Kind, Struct, Value, as_real, constant
+from boatsim.physics.native.kinds import REAL, Kind, Struct, Value, convert_to_double, number_value
 
 NUMBERS = bool | int | float
 
@@ -20,7 +20,7 @@ class NotTranslatable(BadInput):
 
 
 @cache
-def source_head() -> str:
+def source_preamble() -> str:
     """Return the C source in front of every program: arrays and small functions."""
     return (Path(__file__).parent / "head.h").read_text(encoding="utf-8")
 
@@ -36,12 +36,12 @@ class Declarations(ABC):
         self._names: set[str] = set()
 
     @property
-    def text(self) -> str:
-        """The whole C source."""
-        return "\n".join([source_head(), *self.structs, *self.functions])
+    def source_text(self) -> str:
+        """C source of the whole program."""
+        return "\n".join([source_preamble(), *self.structs, *self.functions])
 
     def unused_name(self, name: str) -> str:
-        """Return a C name that nothing else has.
+        """Return a C name that no other function, struct or constant of the program has.
 
         Args:
             name: The wanted name.
@@ -53,8 +53,8 @@ class Declarations(ABC):
         self._names.add(found)
         return found
 
-    def struct(self, record: Any, kinds: Sequence[Kind]) -> Struct:
-        """Return the struct of a named tuple, or of a tuple.
+    def declare_struct(self, record: Any, kinds: Sequence[Kind]) -> Struct:
+        """Declare the C struct of a named tuple, or of a tuple, once; return it.
 
         Args:
             record: Type of the named tuple; None for a tuple.
@@ -72,16 +72,16 @@ class Declarations(ABC):
             self._structs[key] = found
         return self._structs[key]
 
-    def constant_tuple(self, found: tuple[Any, ...]) -> Value:
-        """Return a constant tuple of numbers or of such tuples.
+    def declare_constant_tuple(self, found: tuple[Any, ...]) -> Value:
+        """Declare a Python tuple of numbers as a C constant, once; return its value.
 
         Args:
             found: The Python tuple.
         """
-        parts = [self.constant(x) for x in found]
+        parts = [self.constant_value(x) for x in found]
         if any(p.kind == REAL for p in parts):
-            parts = [as_real(p) for p in parts]
-        kind = self.struct(None, [p.kind for p in parts])
+            parts = [convert_to_double(p) for p in parts]
+        kind = self.declare_struct(None, [p.kind for p in parts])
         key = (kind, found)
         if key not in self._constants:
             name = self.unused_name("constants")
@@ -90,8 +90,8 @@ class Declarations(ABC):
             self._constants[key] = Value(kind, name, found)
         return self._constants[key]
 
-    def constant(self, found: Any) -> Value:
-        """Return a constant number or tuple.
+    def constant_value(self, found: Any) -> Value:
+        """Return a Python number or tuple as a translated constant.
 
         Args:
             found: A Python object.
@@ -102,14 +102,14 @@ class Declarations(ABC):
         if isinstance(found, np.integer | np.floating | np.bool_):
             found = found.item()
         if isinstance(found, NUMBERS):
-            return constant(found)
+            return number_value(found)
         if isinstance(found, tuple):
-            return self.constant_tuple(found)
+            return self.declare_constant_tuple(found)
         raise TypeError(f"{type(found).__name__} is no constant")
 
     @abstractmethod
-    def function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
-        """Translate a function for arguments of given kinds; return its name and result's kind.
+    def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:
+        """Translate a Python function to C; return its C name and the kind of its result.
 
         Args:
             function: A Python or compiled function.
@@ -123,7 +123,7 @@ def _initial(value: Value) -> str:
         inside = []
         assert isinstance(value.kind, Struct)
         for x, kind in zip(value.fixed, value.kind.kinds, strict=True):
-            one = Value(kind, "", x) if isinstance(x, tuple) else constant(x)
-            inside.append(_initial(as_real(one) if kind == REAL else one))
+            one = Value(kind, "", x) if isinstance(x, tuple) else number_value(x)
+            inside.append(_initial(convert_to_double(one) if kind == REAL else one))
         return f"{{{', '.join(inside)}}}"
     return value.text

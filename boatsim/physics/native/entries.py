@@ -18,8 +18,8 @@ class Entry(NamedTuple):
     result: Callable[..., Any] | None = None
 
 
-def numbers(*x: float) -> tuple[float, ...]:
-    """Return the numbers of a result as a tuple."""
+def tuple_of_numbers(*x: float) -> tuple[float, ...]:
+    """Return the numbers of a C function's result as a tuple."""
     return x
 
 
@@ -41,8 +41,8 @@ COMMON: Mapping[str, Entry] = {
     "compute_mass_constants": Entry((VECTOR, VECTOR, VECTOR, VECTOR)),
     "advance_actuators": Entry((VECTOR, VECTOR, REAL, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
-    "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), numbers),
-    "water_velocity": Entry((VECTOR, VECTOR), numbers),
+    "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
+    "water_velocity": Entry((VECTOR, VECTOR), tuple_of_numbers),
 }
 FLEET = records.FleetArrays
 SIMULATION: Mapping[str, Entry] = {
@@ -92,8 +92,8 @@ ESTIMATION: Mapping[str, Entry] = {
 LIBRARIES = ("simulation", "estimation")
 
 
-def entries_of(module: Any, library: str) -> Mapping[str, Entry]:
-    """Return the functions of a program that one of its libraries has.
+def library_functions(module: Any, library: str) -> Mapping[str, Entry]:
+    """Return the functions of a program that one of its C libraries has, by name.
 
     Each library is compiled when one of its functions is first needed.
 

@@ -14,15 +14,15 @@ from boatsim.physics.native.kinds import NOTHING, REAL, TRUTH, ArrayKind, Kind, 
 from boatsim.physics.native.translate import Translation
 
 
-def argument_text(kind: Kind, word: Iterator[int]) -> str:
-    """Return the C expression of an argument that is built from words.
+def argument_expression(kind: Kind, word: Iterator[int]) -> str:
+    """Return the C expression that builds an argument from the words of a call.
 
     Args:
         kind: Kind of the argument.
         word: Numbers of the next words.
     """
     if isinstance(kind, Struct):
-        parts = [argument_text(part, word) for part in kind.kinds]
+        parts = [argument_expression(part, word) for part in kind.kinds]
         return f"(({kind.c}){{{', '.join(parts)}}})"
     if isinstance(kind, ArrayKind):
         address = f"({kind.item.c} *)a[{next(word)}].at"
@@ -36,7 +36,7 @@ def argument_text(kind: Kind, word: Iterator[int]) -> str:
 
 
 def export_function(program: Translation, name: str, function: Any, kinds: Sequence[Kind]) -> None:
-    """Add a function that Python can call.
+    """Add a C function to the program that Python can call.
 
     Args:
         program: The program.
@@ -44,9 +44,9 @@ def export_function(program: Translation, name: str, function: Any, kinds: Seque
         function: The Python function.
         kinds: Kinds of its arguments.
     """
-    inner, returned = program.function(function, kinds)
+    inner, returned = program.translate_function(function, kinds)
     word = count()
-    given = ", ".join([argument_text(kind, word) for kind in kinds])
+    given = ", ".join([argument_expression(kind, word) for kind in kinds])
     call = f"{inner}({given})"
     if returned == NOTHING:
         lines = [f"    {call};", "    return 0.0;"]

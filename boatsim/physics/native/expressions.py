@@ -23,9 +23,9 @@ from boatsim.physics.native.kinds import (
     Scalar,
     Struct,
     Value,
-    as_real,
-    as_truth,
-    constant,
+    convert_to_bool,
+    convert_to_double,
+    number_value,
 )
 
 COMPARISONS: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
@@ -77,71 +77,71 @@ class ExpressionTranslator:
             self.variables[arg.arg] = own
             self.declared[own.text] = kind
 
-    def add(self, line: str) -> None:
-        """Append a line at the present indentation."""
+    def add_line(self, line: str) -> None:
+        """Append a line to the C source, at the present indentation."""
         self.lines.append("    " * self.depth + line)
 
-    def refusal(self, node: ast.AST, what: str) -> NotTranslatable:
-        """Return the exception for a node that has no C form."""
+    def unsupported_error(self, node: ast.AST, what: str) -> NotTranslatable:
+        """Return the exception for a node of the syntax tree that has no C form."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return NotTranslatable(f"{self.file}:{line}: {what} has no C form")
 
-    def temporary(self, kind: Kind) -> str:
-        """Declare a further variable."""
+    def declare_variable(self, kind: Kind) -> str:
+        """Declare a new C variable of a kind; return its name."""
         self.temporaries += 1
         name = f"t_{self.temporaries}"
         self.declared[name] = kind
         return name
 
-    def kept(self, value: Value) -> Value:
-        """Copy a value to a further variable."""
-        own = self.temporary(value.kind)
-        self.add(f"{own} = {value.text};")
+    def copy_to_variable(self, value: Value) -> Value:
+        """Write C source that copies a value to a new variable; return the variable."""
+        own = self.declare_variable(value.kind)
+        self.add_line(f"{own} = {value.text};")
         return Value(value.kind, own)
 
     # Names, numbers and tuples
     # ------------------------------------------------------------------------------------------
 
-    def expression(self, node: ast.expr) -> Value:
-        """Translate an expression."""
+    def translate_expression(self, node: ast.expr) -> Value:
+        """Translate a Python expression to C; lines that must precede it are added first."""
         write = getattr(self, f"of_{type(node).__name__}", None)
         if write is None:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         found: Value = write(node)
         return found
 
-    def whole(self, node: ast.expr) -> Value:
-        """Translate an expression that must be an integer."""
-        value = self.expression(node)
+    def translate_integer(self, node: ast.expr) -> Value:
+        """Translate a Python expression that must be an integer to C."""
+        value = self.translate_expression(node)
         if value.kind == TRUTH:
             return Value(WHOLE, f"((int64_t){value.text})")
         if value.kind != WHOLE:
-            raise self.refusal(node, f"'{ast.unparse(node)}' as an integer")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}' as an integer")
         return value
 
     def of_Constant(self, node: ast.Constant) -> Value:
-        """Translate a number."""
+        """Translate a number in a Python expression to C."""
         if not isinstance(node.value, NUMBERS):
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
-        return constant(node.value)
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+        return number_value(node.value)
 
     def of_Name(self, node: ast.Name) -> Value:
-        """Translate a variable or a constant of the module."""
+        """Translate a name in a Python expression, a variable or module constant, to C."""
         if node.id in self.variables:
             return self.variables[node.id]
-        return self.module_constant(node)
+        return self.translate_module_constant(node)
 
-    def module_constant(self, node: ast.expr) -> Value:
-        """Translate a constant of the function's module, or of one that it imports."""
+    def translate_module_constant(self, node: ast.expr) -> Value:
+        """Translate a constant of the function's module, or of one that it imports, to C."""
         try:
-            return self.program.constant(self.resolve(node))
+            return self.program.constant_value(self.resolve_object(node))
         except TypeError:
-            raise self.refusal(node, f"'{ast.unparse(node)}'") from None
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'") from None
 
-    def resolve(self, node: ast.expr) -> Any:
-        """Return the object to which `name` or `module.name` refers; None for a local variable."""
+    def resolve_object(self, node: ast.expr) -> Any:
+        """Return the Python object to which a name or an attribute of a module refers."""
         if isinstance(node, ast.Attribute):
-            return getattr(self.resolve(node.value), node.attr, None)
+            return getattr(self.resolve_object(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:
             return None
         free = dict(
@@ -152,372 +152,388 @@ class ExpressionTranslator:
         return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
 
     def of_Attribute(self, node: ast.Attribute) -> Value:
-        """Translate a field of a named tuple, a size of an array or a constant of a module."""
+        """Translate an attribute, a field, an array's size or a module constant, to C."""
         if isinstance(node.value, ast.Name) and node.value.id not in self.variables:
-            return self.module_constant(node)
-        owner = self.expression(node.value)
+            return self.translate_module_constant(node)
+        owner = self.translate_expression(node.value)
         if isinstance(owner.kind, Struct) and f"f_{node.attr}" in owner.kind.fields:
             field = f"f_{node.attr}"
             return Value(owner.kind.field_kind(field), f"{owner.text}.{field}")
         if isinstance(owner.kind, ArrayKind) and node.attr == "size" and owner.kind.dimensions == 1:
             return Value(WHOLE, f"{owner.text}.n0")
-        raise self.refusal(node, f"'{ast.unparse(node)}'")
+        raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
-    def entry(self, owner: Value, i: int) -> Value:
-        """Return one entry of a tuple."""
+    def tuple_field(self, owner: Value, i: int) -> Value:
+        """Return the C expression of one entry of a translated tuple."""
         assert isinstance(owner.kind, Struct)
         if isinstance(owner.fixed, tuple):
-            return self.program.constant(owner.fixed[i])
+            return self.program.constant_value(owner.fixed[i])
         kind, field = owner.kind.kinds[i], owner.kind.fields[i]
         return Value(kind, f"{owner.text}.{field}")
 
     def of_Subscript(self, node: ast.Subscript) -> Value:
-        """Translate an entry or a part of an array, or an entry of a tuple."""
+        """Translate a Python subscript, an entry or slice of an array or tuple, to C."""
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
-            owner, place = self.expression(node.value.value), self.expression(node.slice)
+            owner, place = (
+                self.translate_expression(node.value.value),
+                self.translate_expression(node.slice),
+            )
             return Value(WHOLE, f"{owner.text}.n{place.fixed}")
-        owner = self.expression(node.value)
+        owner = self.translate_expression(node.value)
         if isinstance(owner.kind, Struct):
-            return self.entry_of_tuple(owner, node)
+            return self.translate_tuple_entry(owner, node)
         if not isinstance(owner.kind, ArrayKind):
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         places = [node.slice]
         if isinstance(node.slice, ast.Tuple):
             places = node.slice.elts
         if isinstance(places[-1], ast.Slice):
-            return self.part_of_array(owner, places, node)
-        indices = [self.index(owner, axis, p) for axis, p in enumerate(places)]
-        return self.entry_of_array(owner, indices, node)
+            return self.translate_array_slice(owner, places, node)
+        indices = [self.translate_index(owner, axis, p) for axis, p in enumerate(places)]
+        return self.translate_array_entry(owner, indices, node)
 
-    def index(self, owner: Value, axis: int, node: ast.expr) -> str:
-        """Translate an index; a negative constant counts from the end."""
-        value = self.whole(node)
+    def translate_index(self, owner: Value, axis: int, node: ast.expr) -> str:
+        """Translate an array index to C; a negative constant counts from the end."""
+        value = self.translate_integer(node)
         if isinstance(value.fixed, int) and value.fixed < 0:
             return f"({owner.text}.n{axis} - {-value.fixed})"
         return value.text
 
-    def entry_of_array(self, owner: Value, indices: Sequence[str], node: ast.expr) -> Value:
-        """Return an entry, a row or a plane of an array."""
+    def translate_array_entry(self, owner: Value, indices: Sequence[str], node: ast.expr) -> Value:
+        """Return the C expression of an entry, a row or a plane of an array."""
         assert isinstance(owner.kind, ArrayKind)
         inside, size, n = ", ".join([owner.text, *indices]), owner.kind.dimensions, len(indices)
         if n == size:
             more = "" if owner.kind.item == REAL else "_rows"
             return Value(owner.kind.item, f"(*at{size}{more}({inside}))")
         if (size, n) not in ROW_FUNCTIONS:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         return Value(ArrayKind(REAL, size - n), f"{ROW_FUNCTIONS[size, n]}({inside})")
 
-    def part_of_array(self, owner: Value, places: Sequence[ast.expr], node: ast.expr) -> Value:
-        """Return consecutive entries of a vector, or consecutive rows of a matrix."""
+    def translate_array_slice(
+        self, owner: Value, places: Sequence[ast.expr], node: ast.expr
+    ) -> Value:
+        """Return the C expression of consecutive entries of a vector or rows of a matrix."""
         if len(places) > 1:
-            indices = [self.index(owner, axis, p) for axis, p in enumerate(places[:-1])]
-            owner = self.entry_of_array(owner, indices, node)
+            indices = [self.translate_index(owner, axis, p) for axis, p in enumerate(places[:-1])]
+            owner = self.translate_array_entry(owner, indices, node)
         part, kind = places[-1], owner.kind
         assert isinstance(part, ast.Slice) and isinstance(kind, ArrayKind)
         if part.step is not None or kind.dimensions > 2 or kind.item != REAL:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
-        owner = owner if owner.text.isidentifier() else self.kept(owner)
-        low = self.index(owner, 0, part.lower) if part.lower else "0"
-        high = self.index(owner, 0, part.upper) if part.upper else f"{owner.text}.n0"
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+        owner = owner if owner.text.isidentifier() else self.copy_to_variable(owner)
+        low = self.translate_index(owner, 0, part.lower) if part.lower else "0"
+        high = self.translate_index(owner, 0, part.upper) if part.upper else f"{owner.text}.n0"
         return Value(kind, f"part_of{kind.dimensions}({owner.text}, {low}, {high})")
 
-    def entry_of_tuple(self, owner: Value, node: ast.Subscript) -> Value:
-        """Return an entry of a tuple, all of the same kind unless the index is constant."""
+    def translate_tuple_entry(self, owner: Value, node: ast.Subscript) -> Value:
+        """Return the C expression of a tuple's entry; a variable index needs equal kinds."""
         assert isinstance(owner.kind, Struct)
-        place = self.whole(node.slice)
+        place = self.translate_integer(node.slice)
         if not owner.kind.kinds:
-            raise self.refusal(node, f"'{ast.unparse(node)}', an entry of an empty tuple,")
+            raise self.unsupported_error(
+                node, f"'{ast.unparse(node)}', an entry of an empty tuple,"
+            )
         if isinstance(place.fixed, int):
-            return self.entry(owner, place.fixed % len(owner.kind.kinds))
-        kind = owner.kind.common
+            return self.tuple_field(owner, place.fixed % len(owner.kind.kinds))
+        kind = owner.kind.common_field_kind
         if kind is None:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if owner.text.isidentifier():
             return Value(kind, f"((const {kind.c} *)&{owner.text})[{place.text}]")
         inside = f"{owner.kind.c} whole_ = {owner.text}; ((const {kind.c} *)&whole_)[{place.text}];"
         return Value(kind, f"({{ {inside} }})")
 
     def of_Tuple(self, node: ast.Tuple) -> Value:
-        """Translate a tuple."""
-        return self.tuple_of(self.spread(node.elts))
+        """Translate a Python tuple to a C struct."""
+        return self.make_tuple(self.translate_arguments(node.elts))
 
-    def tuple_of(self, parts: Sequence[Value]) -> Value:
-        """Return a tuple of values."""
-        kind = self.program.struct(None, [p.kind for p in parts])
+    def make_tuple(self, parts: Sequence[Value]) -> Value:
+        """Return the C struct value that holds translated values as a tuple."""
+        kind = self.program.declare_struct(None, [p.kind for p in parts])
         return Value(kind, f"(({kind.c}){{{', '.join(p.text for p in parts)}}})")
 
     def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
-        """Translate a sign or `not`."""
-        of = self.expression(node.operand)
+        """Translate a sign or `not` in a Python expression to C."""
+        of = self.translate_expression(node.operand)
         if isinstance(node.op, ast.Not):
-            truth = as_truth(of)
+            truth = convert_to_bool(of)
             if isinstance(truth.fixed, bool):
-                return constant(not truth.fixed)
+                return number_value(not truth.fixed)
             return Value(TRUTH, f"(!{truth.text})")
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
-            return constant(-of.fixed)
+            return number_value(-of.fixed)
         if isinstance(node.op, ast.USub | ast.UAdd) and isinstance(of.kind, Scalar):
             return Value(of.kind, f"({OPERATORS[type(node.op)]}{of.text})")
-        raise self.refusal(node, f"'{ast.unparse(node)}'")
+        raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
-        """Translate arithmetic; integers become floats beside floats, and in divisions."""
-        a, b = self.expression(node.left), self.expression(node.right)
-        return self.arithmetic(node, node.op, a, b)
+        """Translate a binary arithmetic operation in Python to C."""
+        a, b = self.translate_expression(node.left), self.translate_expression(node.right)
+        return self.translate_arithmetic(node, node.op, a, b)
 
-    def arithmetic(self, node: ast.expr, op: ast.operator, a: Value, b: Value) -> Value:
-        """Return the result of an operator of two numbers."""
+    def translate_arithmetic(self, node: ast.expr, op: ast.operator, a: Value, b: Value) -> Value:
+        """Return the C expression of an arithmetic operator applied to two numbers."""
         if not (isinstance(a.kind, Scalar) and isinstance(b.kind, Scalar)):
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if isinstance(op, ast.Pow):
-            return self.power(node, a, b)
+            return self.translate_power(node, a, b)
         real = REAL in (a.kind, b.kind) or isinstance(op, ast.Div)
         if isinstance(op, ast.Mod | ast.FloorDiv):
-            return self.remainder(node, op, a, b, real)
+            return self.translate_remainder(node, op, a, b, real)
         if type(op) not in OPERATORS:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         sign = OPERATORS[type(op)]
         if real:
-            a, b = as_real(a), as_real(b)
-            return folded(op, a, b) or Value(REAL, f"({a.text} {sign} {b.text})")
+            a, b = convert_to_double(a), convert_to_double(b)
+            return fold_constants(op, a, b) or Value(REAL, f"({a.text} {sign} {b.text})")
         if a.kind == b.kind == TRUTH and sign in "&|":
             return Value(TRUTH, f"({a.text} {sign} {b.text})")
-        a, b = self.integers(a), self.integers(b)
+        a, b = self.convert_bool_to_integer(a), self.convert_bool_to_integer(b)
         if BITS in (a.kind, b.kind):
             return Value(BITS, f"((uint64_t){a.text} {sign} (uint64_t){b.text})")
-        return folded(op, a, b) or Value(WHOLE, f"({a.text} {sign} {b.text})")
+        return fold_constants(op, a, b) or Value(WHOLE, f"({a.text} {sign} {b.text})")
 
-    def integers(self, value: Value) -> Value:
-        """Convert a bool to an integer."""
+    def convert_bool_to_integer(self, value: Value) -> Value:
+        """Convert a translated bool to an integer in C; other values are returned unchanged."""
         if value.kind != TRUTH:
             return value
         if isinstance(value.fixed, bool):
-            return constant(int(value.fixed))
+            return number_value(int(value.fixed))
         return Value(WHOLE, f"((int64_t){value.text})")
 
-    def remainder(self, node: ast.expr, op: ast.operator, a: Value, b: Value, real: bool) -> Value:
-        """Return `a % b` or `a // b`, rounded down as in Python."""
+    def translate_remainder(
+        self, node: ast.expr, op: ast.operator, a: Value, b: Value, real: bool
+    ) -> Value:
+        """Return the C expression of `a % b` or `a // b`, rounded down as in Python."""
         if real:
             if isinstance(op, ast.FloorDiv):
-                raise self.refusal(node, f"'{ast.unparse(node)}'")
-            return Value(REAL, f"remainder_real({as_real(a).text}, {as_real(b).text})")
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            return Value(
+                REAL, f"remainder_real({convert_to_double(a).text}, {convert_to_double(b).text})"
+            )
         name = "quotient" if isinstance(op, ast.FloorDiv) else "remainder_whole"
-        return Value(WHOLE, f"{name}({self.integers(a).text}, {self.integers(b).text})")
+        a, b = self.convert_bool_to_integer(a), self.convert_bool_to_integer(b)
+        return Value(WHOLE, f"{name}({a.text}, {b.text})")
 
-    def power(self, node: ast.expr, base: Value, exponent: Value) -> Value:
-        """Return a power; small integer powers are products."""
+    def translate_power(self, node: ast.expr, base: Value, exponent: Value) -> Value:
+        """Return the C expression of a power; small integer powers become products."""
         if base.kind == REAL and exponent.fixed in (2, 3, 4) and isinstance(exponent.fixed, int):
             return Value(REAL, f"power{exponent.fixed}({base.text})")
         if base.kind == REAL and exponent.kind == REAL:
             return Value(REAL, f"pow({base.text}, {exponent.text})")
-        raise self.refusal(node, f"'{ast.unparse(node)}'")
+        raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
 
     def of_Compare(self, node: ast.Compare) -> Value:
-        """Translate a comparison or a chain of comparisons."""
-        ends = [self.expression(e) for e in (node.left, *node.comparators)]
+        """Translate a Python comparison, or a chain of comparisons, to C."""
+        ends = [self.translate_expression(e) for e in (node.left, *node.comparators)]
         parts = []
         for op, a, b in zip(node.ops, ends, ends[1:], strict=False):
             if type(op) not in OPERATORS or not isinstance(a.kind, Scalar):
-                raise self.refusal(node, f"'{ast.unparse(node)}'")
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
             sign = OPERATORS[type(op)]
             if isinstance(a.fixed, NUMBERS) and isinstance(b.fixed, NUMBERS):
-                parts.append(constant(bool(COMPARISONS[type(op)](a.fixed, b.fixed))))
+                parts.append(number_value(bool(COMPARISONS[type(op)](a.fixed, b.fixed))))
                 continue
             if REAL in (a.kind, b.kind):
-                a, b = as_real(a), as_real(b)
+                a, b = convert_to_double(a), convert_to_double(b)
             parts.append(Value(TRUTH, f"({a.text} {sign} {b.text})"))
-        return self.joined(parts, ast.And())
+        return self.join_conditions(parts, ast.And())
 
     def of_BoolOp(self, node: ast.BoolOp) -> Value:
-        """Translate `and` and `or`, without constant operands."""
+        """Translate Python's `and` and `or` to C, without constant operands."""
         before = len(self.lines)
-        found = self.joined([as_truth(self.expression(v)) for v in node.values], node.op)
+        found = self.join_conditions(
+            [convert_to_bool(self.translate_expression(v)) for v in node.values], node.op
+        )
         if len(self.lines) != before:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         return found
 
-    def joined(self, parts: Sequence[Value], op: ast.boolop) -> Value:
-        """Join truths by `and` or `or`."""
+    def join_conditions(self, parts: Sequence[Value], op: ast.boolop) -> Value:
+        """Return the C expression that joins translated conditions by `and` or `or`."""
         deciding = isinstance(op, ast.Or)
         if any(p.fixed is deciding for p in parts):
-            return constant(deciding)
+            return number_value(deciding)
         left = [p for p in parts if p.fixed is None]
         if not left:
-            return constant(not deciding)
+            return number_value(not deciding)
         if len(left) == 1:
             return left[0]
         return Value(TRUTH, f"({f' {OPERATORS[type(op)]} '.join(p.text for p in left)})")
 
     def of_IfExp(self, node: ast.IfExp) -> Value:
-        """Translate a conditional expression."""
-        test = as_truth(self.expression(node.test))
+        """Translate a conditional expression in Python to C."""
+        test = convert_to_bool(self.translate_expression(node.test))
         if isinstance(test.fixed, bool):
-            return self.expression(node.body if test.fixed else node.orelse)
+            return self.translate_expression(node.body if test.fixed else node.orelse)
         before = len(self.lines)
-        a, b = self.expression(node.body), self.expression(node.orelse)
+        a, b = self.translate_expression(node.body), self.translate_expression(node.orelse)
         if len(self.lines) != before:
-            raise self.refusal(node, f"'{ast.unparse(node)}'")
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         if a.kind != b.kind:
             if not (isinstance(a.kind, Scalar) and isinstance(b.kind, Scalar)):
-                raise self.refusal(node, f"'{ast.unparse(node)}'")
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
             if REAL in (a.kind, b.kind):
-                a, b = as_real(a), as_real(b)
+                a, b = convert_to_double(a), convert_to_double(b)
             else:
-                a, b = self.integers(a), self.integers(b)
+                a, b = self.convert_bool_to_integer(a), self.convert_bool_to_integer(b)
         return Value(a.kind, f"({test.text} ? {a.text} : {b.text})")
 
     # Calls
     # ------------------------------------------------------------------------------------------
 
     def of_Call(self, node: ast.Call) -> Value:
-        """Translate a call of a function, a constructor of named tuples or a conversion."""
-        what = self.resolve(node.func)
+        """Translate a Python call to C: of a function, a named tuple or a conversion."""
+        what = self.resolve_object(node.func)
         if isinstance(what, type) and issubclass(what, tuple) and hasattr(what, "_fields"):
-            return self.named_tuple(node, what)
+            return self.translate_named_tuple(node, what)
         if isinstance(what, Hashable):
             if what in CASTS:
-                return self.conversion(CASTS[what], self.expression(node.args[0]))
+                return self.convert_kind(CASTS[what], self.translate_expression(node.args[0]))
             if what in (min, max):
-                return self.extreme("least" if what is min else "most", node)
+                return self.translate_min_or_max("least" if what is min else "most", node)
             if what in (abs, np.abs):
-                return self.absolute(self.expression(node.args[0]))
+                return self.translate_absolute(self.translate_expression(node.args[0]))
             if what in PREDICATES:
-                of = as_real(self.expression(node.args[0]))
+                of = convert_to_double(self.translate_expression(node.args[0]))
                 return Value(TRUTH, f"((bool){PREDICATES[what]}({of.text}))")
             if what in ALLOCATIONS:
-                return self.new_array(node)
+                return self.allocate_array(node)
             if what in MATH:
-                given = ", ".join(as_real(self.expression(a)).text for a in node.args)
+                given = ", ".join(
+                    convert_to_double(self.translate_expression(a)).text for a in node.args
+                )
                 text = f"{MATH[what]}({given})"
                 if what in WHOLE_RESULT:
                     return Value(WHOLE, f"((int64_t){text})")
                 return Value(REAL, text)
         if what is len:
-            return self.length(node)
+            return self.translate_length(node)
         python = python_function(what)
         if inspect.isfunction(python):
-            return self.call(what, self.bound(node, python))
-        raise self.refusal(node, f"'{ast.unparse(node.func)}'")
+            return self.translate_call(what, self.bind_arguments(node, python))
+        raise self.unsupported_error(node, f"'{ast.unparse(node.func)}'")
 
-    def named_tuple(self, node: ast.Call, what: Any) -> Value:
-        """Construct a named tuple; entries that are declared floats are converted."""
-        given = self.bound(node, what.__new__, skip=1)
+    def translate_named_tuple(self, node: ast.Call, what: Any) -> Value:
+        """Translate the construction of a named tuple to C; declared floats are converted."""
+        given = self.bind_arguments(node, what.__new__, skip=1)
         parts = []
         for name, value in zip(what._fields, given, strict=True):
             declared = what.__annotations__.get(name, float)
             if declared in (float, "float") and isinstance(value.kind, Scalar):
-                value = as_real(value)
+                value = convert_to_double(value)
             parts.append(value)
-        kind = self.program.struct(what, [p.kind for p in parts])
+        kind = self.program.declare_struct(what, [p.kind for p in parts])
         return Value(kind, f"(({kind.c}){{{', '.join(p.text for p in parts)}}})")
 
-    def bound(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
-        """Return the arguments of a call in the order of its parameters, with default values."""
+    def bind_arguments(self, node: ast.Call, python: Any, skip: int = 0) -> list[Value]:
+        """Return the translated arguments of a Python call in the order of its parameters."""
         parameters = list(inspect.signature(python).parameters.values())[skip:]
         given: dict[str, Value] = {}
-        for parameter, value in zip(parameters, self.spread(node.args), strict=False):
+        for parameter, value in zip(parameters, self.translate_arguments(node.args), strict=False):
             given[parameter.name] = value
         for keyword in node.keywords:
-            given[str(keyword.arg)] = self.expression(keyword.value)
+            given[str(keyword.arg)] = self.translate_expression(keyword.value)
         for parameter in parameters:
             if parameter.name not in given:
-                given[parameter.name] = constant(parameter.default)
+                given[parameter.name] = number_value(parameter.default)
         return [given[parameter.name] for parameter in parameters]
 
-    def spread(self, nodes: Sequence[ast.expr]) -> list[Value]:
-        """Translate expressions; a tuple with a star counts as its entries."""
+    def translate_arguments(self, nodes: Sequence[ast.expr]) -> list[Value]:
+        """Translate arguments of a call to C; a tuple with a star counts as its entries."""
         found: list[Value] = []
         for node in nodes:
             if not isinstance(node, ast.Starred):
-                found.append(self.expression(node))
+                found.append(self.translate_expression(node))
                 continue
-            whole = self.expression(node.value)
+            whole = self.translate_expression(node.value)
             if not isinstance(whole.kind, Struct):
-                raise self.refusal(node, f"'{ast.unparse(node)}'")
-            found += [self.entry(whole, i) for i in range(len(whole.kind.kinds))]
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            found += [self.tuple_field(whole, i) for i in range(len(whole.kind.kinds))]
         return found
 
-    def call(self, what: Any, given: Sequence[Value]) -> Value:
-        """Call a function that is itself translated."""
+    def translate_call(self, what: Any, given: Sequence[Value]) -> Value:
+        """Translate a call of a function that is itself translated to C."""
         python = python_function(what)
         names = python.__code__.co_varnames[: len(given)]
         passed = []
         for name, value in zip(names, given, strict=True):
             is_float = python.__annotations__.get(name) in (float, "float")
             if is_float and isinstance(value.kind, Scalar):
-                value = as_real(value)
+                value = convert_to_double(value)
             elif value.kind == TRUTH and python.__annotations__.get(name) not in (bool, "bool"):
-                value = self.integers(value)
+                value = self.convert_bool_to_integer(value)
             passed.append(value)
-        name, kind = self.program.function(what, [v.kind for v in passed])
+        name, kind = self.program.translate_function(what, [v.kind for v in passed])
         return Value(kind, f"{name}({', '.join(v.text for v in passed)})")
 
-    def conversion(self, kind: Scalar, value: Value) -> Value:
-        """Convert a number to another kind."""
+    def convert_kind(self, kind: Scalar, value: Value) -> Value:
+        """Convert a translated number to another C type."""
         if kind == REAL:
-            return as_real(value)
+            return convert_to_double(value)
         if kind == TRUTH:
-            return as_truth(value)
+            return convert_to_bool(value)
         if value.kind == kind:
             return value
         if isinstance(value.fixed, int | float) and kind == WHOLE:
-            return constant(int(value.fixed))
+            return number_value(int(value.fixed))
         if isinstance(value.fixed, int) and kind == BITS:
             return Value(BITS, f"UINT64_C({value.fixed})")
         return Value(kind, f"(({kind.c}){value.text})")
 
-    def extreme(self, name: str, node: ast.Call) -> Value:
-        """Return the least or largest of two or more numbers."""
-        given = [self.expression(a) for a in node.args]
+    def translate_min_or_max(self, name: str, node: ast.Call) -> Value:
+        """Translate a call of `min` or `max` with two or more numbers to C."""
+        given = [self.translate_expression(a) for a in node.args]
         real = any(v.kind == REAL for v in given)
-        given = [as_real(v) if real else self.integers(v) for v in given]
+        given = [convert_to_double(v) if real else self.convert_bool_to_integer(v) for v in given]
         text = given[0].text
         for value in given[1:]:
             text = f"{name}_{'real' if real else 'whole'}({text}, {value.text})"
         return Value(REAL if real else WHOLE, text)
 
-    def absolute(self, value: Value) -> Value:
-        """Return the absolute value of a number."""
+    def translate_absolute(self, value: Value) -> Value:
+        """Return the C expression of the absolute value of a number."""
         if value.kind == REAL:
             return Value(REAL, f"fabs({value.text})")
-        return Value(WHOLE, f"magnitude({self.integers(value).text})")
+        return Value(WHOLE, f"magnitude({self.convert_bool_to_integer(value).text})")
 
-    def length(self, node: ast.Call) -> Value:
-        """Return the length of an array or a tuple."""
-        known = self.resolve(node.args[0])
+    def translate_length(self, node: ast.Call) -> Value:
+        """Translate `len` of an array or a tuple to C."""
+        known = self.resolve_object(node.args[0])
         if isinstance(known, tuple):
-            return constant(len(known))
-        of = self.expression(node.args[0])
+            return number_value(len(known))
+        of = self.translate_expression(node.args[0])
         if isinstance(of.kind, Struct):
-            return constant(len(of.kind.kinds))
+            return number_value(len(of.kind.kinds))
         return Value(WHOLE, f"{of.text}.n0")
 
-    def new_array(self, node: ast.Call) -> Value:
-        """Allocate an array of zeros, which is released when the function returns."""
+    def allocate_array(self, node: ast.Call) -> Value:
+        """Write C source that allocates an array of zeros, freed when the function returns."""
         if self.loops:
-            raise self.refusal(node, "an array that is allocated within a loop")
+            raise self.unsupported_error(node, "an array that is allocated within a loop")
         wanted, item = node.args[0], REAL
         for keyword in node.keywords:
-            if keyword.arg != "dtype" or self.resolve(keyword.value) not in CASTS:
-                raise self.refusal(node, f"'{ast.unparse(node)}'")
-            item = CASTS[self.resolve(keyword.value)]
-        size = self.expression(wanted)
+            if keyword.arg != "dtype" or self.resolve_object(keyword.value) not in CASTS:
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            item = CASTS[self.resolve_object(keyword.value)]
+        size = self.translate_expression(wanted)
         sizes = [size]
         if isinstance(size.kind, Struct):
-            whole, count = self.kept(size), len(size.kind.kinds)
-            sizes = [self.entry(whole, i) for i in range(count)]
+            whole, count = self.copy_to_variable(size), len(size.kind.kinds)
+            sizes = [self.tuple_field(whole, i) for i in range(count)]
         kind = ArrayKind(item, len(sizes))
         total = " * ".join(s.text for s in sizes)
         self.temporaries += 1
         own = f"m_{self.temporaries}"
         release = "real" if item == REAL else "whole"
         self.arrays.append(f"{item.c} *{own} RELEASED({release}) = NULL;")
-        self.add(f"{own} = calloc({total}, sizeof({item.c}));")
+        self.add_line(f"{own} = calloc({total}, sizeof({item.c}));")
         return Value(kind, f"(({kind.c}){{{own}, {', '.join(s.text for s in sizes)}}})")
 
 
-def folded(op: ast.operator, a: Value, b: Value) -> Value | None:
-    """Return the sum, difference or product of two constants; None if either is none.
+def fold_constants(op: ast.operator, a: Value, b: Value) -> Value | None:
+    """Return the constant result of an operator on two constants; None if one is no constant.
 
     Args:
         op: The operator.
@@ -525,5 +541,5 @@ def folded(op: ast.operator, a: Value, b: Value) -> Value | None:
         b: Second operand, of the same kind.
     """
     if type(op) in FOLDED and isinstance(a.fixed, NUMBERS) and isinstance(b.fixed, NUMBERS):
-        return constant(FOLDED[type(op)](a.fixed, b.fixed))
+        return number_value(FOLDED[type(op)](a.fixed, b.fixed))
     return None

@@ -20,7 +20,7 @@ class ArrayKind:
 
     @property
     def c(self) -> str:
-        """Name of the C struct: a pointer and the sizes."""
+        """Name of the C struct of the array: a pointer and the sizes."""
         return f"{'array' if self.item == REAL else 'rows'}{self.dimensions}_t"
 
 
@@ -33,12 +33,12 @@ class Struct:
     kinds: tuple["Kind", ...]
 
     def field_kind(self, name: str) -> "Kind":
-        """Return the kind of a field."""
+        """Return the kind of a field of the struct."""
         return self.kinds[self.fields.index(name)]
 
     @property
-    def common(self) -> "Kind | None":
-        """The kind of all fields, or None if they differ."""
+    def common_field_kind(self) -> "Kind | None":
+        """Kind that all fields have, or None if the fields differ."""
         if len(set(self.kinds)) == 1:
             return self.kinds[0]
         return None
@@ -64,19 +64,19 @@ class Value:
     fixed: object = None  # bool, int, float or a tuple of these
 
 
-def leaves(kind: Kind) -> list[Scalar | ArrayKind]:
-    """Return the kinds of the numbers and arrays in a possibly nested struct, in order.
+def scalar_and_array_kinds(kind: Kind) -> list[Scalar | ArrayKind]:
+    """Return the kinds of all numbers and arrays in a possibly nested struct, in order.
 
     Args:
         kind: Any kind.
     """
     if isinstance(kind, Struct):
-        return list(chain.from_iterable(map(leaves, kind.kinds)))
+        return list(chain.from_iterable(map(scalar_and_array_kinds, kind.kinds)))
     return [kind]
 
 
-def constant(number: object) -> Value:
-    """Return the C source of a Python number.
+def number_value(number: object) -> Value:
+    """Return a Python number as a translated constant, with its C source.
 
     Args:
         number: A bool, int or float.
@@ -96,7 +96,7 @@ def constant(number: object) -> Value:
     return Value(REAL, text if number >= 0.0 and not text.startswith("-") else f"({text})", number)
 
 
-def as_real(value: Value) -> Value:
+def convert_to_double(value: Value) -> Value:
     """Convert a translated number to a double.
 
     Args:
@@ -105,11 +105,11 @@ def as_real(value: Value) -> Value:
     if value.kind == REAL:
         return value
     if isinstance(value.fixed, bool | int):
-        return constant(float(value.fixed))
+        return number_value(float(value.fixed))
     return Value(REAL, f"((double){value.text})")
 
 
-def as_truth(value: Value) -> Value:
+def convert_to_bool(value: Value) -> Value:
     """Convert a translated number to a bool: whether it is not zero.
 
     Args:
@@ -118,5 +118,5 @@ def as_truth(value: Value) -> Value:
     if value.kind == TRUTH:
         return value
     if isinstance(value.fixed, int | float):
-        return constant(bool(value.fixed))
+        return number_value(bool(value.fixed))
     return Value(TRUTH, f"({value.text} != 0)")

@@ -14,16 +14,16 @@ from typing import Any
 from boatsim.physics.native.build import NoCompiler, load_library
 from boatsim.physics.native.calls import NativeFunction, argument_kinds
 from boatsim.physics.native.declarations import NotTranslatable
-from boatsim.physics.native.entries import LIBRARIES, entries_of
+from boatsim.physics.native.entries import LIBRARIES, library_functions
 from boatsim.physics.native.exports import export_function
-from boatsim.physics.native.mujoco_callback import add_callback, native_callback
+from boatsim.physics.native.mujoco_callback import add_mujoco_callback, compiled_mujoco_callback
 from boatsim.physics.native.translate import Translation
 
 PREFIX = "boatsim_"  # of the functions of a library
 CALLBACK = "compile_passive_callback"  # function of a program for which there is another in C
 
 
-def program_source(module: Any, library: str) -> str:
+def translate_program(module: Any, library: str) -> str:
     """Translate functions of a program that Python calls, and all that they call, to C.
 
     Args:
@@ -34,16 +34,16 @@ def program_source(module: Any, library: str) -> str:
         NotTranslatable: A law has no C form.
     """
     program = Translation()
-    for name, entry in entries_of(module, library).items():
+    for name, entry in library_functions(module, library).items():
         kinds = argument_kinds(program, entry)
         export_function(program, PREFIX + name, getattr(module, name), kinds)
     if has_callback(module, library):
-        add_callback(program, module)
-    return program.text
+        add_mujoco_callback(program, module)
+    return program.source_text
 
 
 def has_callback(module: Any, library: str) -> bool:
-    """Return whether a library of a program has the callback of MuJoCo.
+    """Return whether a C library of a program contains MuJoCo's passive-force callback.
 
     Args:
         module: The program's package.
@@ -71,7 +71,7 @@ class NativeProgram:
             NotTranslatable: A law has no C form.
         """
         self.module = module
-        later = {name for every in LIBRARIES for name in entries_of(module, every)}
+        later = {name for every in LIBRARIES for name in library_functions(module, every)}
         for name, value in vars(module).items():
             if name not in later and name != CALLBACK:
                 self.__dict__[name] = value
@@ -79,18 +79,18 @@ class NativeProgram:
 
     def _load(self, library: str) -> None:
         folder = Path(self.module.__file__).parent
-        loaded = load_library(folder, library, lambda: program_source(self.module, library))
-        for name, entry in entries_of(self.module, library).items():
+        loaded = load_library(folder, library, lambda: translate_program(self.module, library))
+        for name, entry in library_functions(self.module, library).items():
             if name not in self.__dict__:
                 self.__dict__[name] = NativeFunction(getattr(loaded, PREFIX + name), entry)
         if has_callback(self.module, library):
-            self.__dict__[CALLBACK] = native_callback(loaded)
+            self.__dict__[CALLBACK] = compiled_mujoco_callback(loaded)
 
     def __getattr__(self, name: str) -> Any:
         """Return what the loaded libraries do not have: from another one, else from the package."""
         for library in LIBRARIES:
             called_back = name == CALLBACK and has_callback(self.module, library)
-            if called_back or name in entries_of(self.module, library):
+            if called_back or name in library_functions(self.module, library):
                 try:
                     self._load(library)
                 except (NoCompiler, NotTranslatable):
@@ -101,12 +101,12 @@ class NativeProgram:
 
 @cache
 def native_program(module: Any, library: str, command: str) -> NativeProgram:
-    """Return a program with functions from C, once in a process.
+    """Load the C library of a program; return the program with its functions from C.
 
     Args:
         module: The program's package.
         library: The library that is needed first.
-        command: Path of the C compiler, `build.compiler()`.
+        command: Path of the C compiler, `build.compiler_path()`.
 
     Raises:
         NoCompiler: The compiler fails.

@@ -22,15 +22,15 @@ def _callback_source() -> str:
     return (Path(__file__).parent / "callback.h").read_text(encoding="utf-8")
 
 
-def add_callback(program: Translation, module: Any) -> None:
-    """Add the callback of a vessel to the C source of its program.
+def add_mujoco_callback(program: Translation, module: Any) -> None:
+    """Add MuJoCo's passive-force callback of a vessel to the C source of its program.
 
     Args:
         program: The C source.
         module: The program's package.
     """
     python = sys.modules[f"{module.__name__}.callback"]
-    name, _ = program.function(python.add_passive_forces, ARGUMENTS)
+    name, _ = program.translate_function(python.add_passive_forces, ARGUMENTS)
     defined = {
         "NQ": module.NQ,
         "NM": module.NQ * (module.NQ + 1) // 2,
@@ -53,8 +53,10 @@ class NativeCallback:
         self.ctypes = function
 
 
-def native_callback(library: ctypes.CDLL) -> Callable[[Mapping[str, int], int], NativeCallback]:
-    """Return `compile_passive_callback` of a program from its C library.
+def compiled_mujoco_callback(
+    library: ctypes.CDLL,
+) -> Callable[[Mapping[str, int], int], NativeCallback]:
+    """Return `compile_passive_callback` of a program, taken from its C library.
 
     Args:
         library: The library `simulation`.

@@ -14,7 +14,7 @@ from boatsim.physics.vessel.bindings import ChannelBindings
 from boatsim.physics.vessel.schema import Body
 
 
-def check_estimated(estimated: Iterable[str], vessel: ChannelBindings, label: str) -> None:
+def check_estimated_table(estimated: Iterable[str], vessel: ChannelBindings, label: str) -> None:
     """Check the keys of the table [estimated] of a vessel file.
 
     Each key must be a group of numbers ("damping") or one number of the vessel.

@@ -10,7 +10,7 @@ from boatsim.physics.content import find_content_file
 from boatsim.physics.particulars import check_slenderness
 from boatsim.physics.vessel import loads as load_conditions
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
-from boatsim.physics.vessel.estimated import check_estimated
+from boatsim.physics.vessel.estimated import check_estimated_table
 from boatsim.physics.vessel.model import FILE_NAME, Vessel
 from boatsim.physics.vessel.schema import VesselFile
 
@@ -61,7 +61,7 @@ def load_vessel(
     vessel = with_effect_tables(vessel, content.effect, folder, label)
     vessel = with_effect_tables(vessel, extra, base_folder or folder, label)
     vessel.check(label)
-    check_estimated(vessel.estimated, vessel, label)
+    check_estimated_table(vessel.estimated, vessel, label)
     return vessel
 
 

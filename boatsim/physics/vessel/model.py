@@ -28,7 +28,7 @@ from boatsim.physics.param import UNSET
 from boatsim.physics.spread import FittedUncertainty
 from boatsim.physics.vessel.bindings import ChannelBindings, check_bindings
 from boatsim.physics.vessel.effect_tables import effect_from_table, effect_table
-from boatsim.physics.vessel.estimated import check_estimated
+from boatsim.physics.vessel.estimated import check_estimated_table
 from boatsim.physics.vessel.plain_hull import hull_xml
 from boatsim.physics.vessel.schema import (
     LARGEST_HULL,
@@ -227,7 +227,7 @@ class Vessel(ChannelBindings):
             hull, name, "Drawn by boatsim from the dimensions; forces are in vessel.toml."
         )
         vessel = dataclasses.replace(vessel, hull_xml=text)._with_effects(effects)
-        check_estimated(vessel.estimated, vessel, name)
+        check_estimated_table(vessel.estimated, vessel, name)
         return vessel
 
     # Changes

@@ -7,7 +7,7 @@ from pydantic import Field, PositiveFloat, field_validator, model_validator
 
 from boatsim.errors import BadInput
 from boatsim.files import Table
-from boatsim.physics.facts import first_invalid
+from boatsim.physics.facts import first_invalid_fact
 from boatsim.physics.signals import COMPONENTS, POSE, RATES
 from boatsim.physics.spread import SpreadTable
 
@@ -133,7 +133,7 @@ class DiagnosisTable(Table):
     @field_validator("facts")
     @classmethod
     def _check_facts(cls, facts: dict[str, object]) -> dict[str, object]:
-        if found := first_invalid(facts):
+        if found := first_invalid_fact(facts):
             raise ValueError(f"{found[0]} = {facts[found[0]]!r}; allowed is {found[1]}")
         return facts
 

@@ -111,11 +111,11 @@ def _pose_topic(name: str, pose: Mapping[str, Array], types: Mapping[str, Any]) 
     point, quaternion = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
     positions, orientations = _positions_and_orientations(pose)
 
-    def make(row: int, stamp: int) -> Any:
+    def make_pose_message(row: int, stamp: int) -> Any:
         place = body(point(*positions[row]), quaternion(*orientations[row]))
         return stamped(_header(types, stamp, WORLD), place)
 
-    return Topic(name, kind, _complete_rows(pose), make)
+    return Topic(name, kind, _complete_rows(pose), make_pose_message)
 
 
 def _transform_topic(pose: Mapping[str, Array], types: Mapping[str, Any]) -> Topic:
@@ -126,11 +126,11 @@ def _transform_topic(pose: Mapping[str, Array], types: Mapping[str, Any]) -> Top
     quaternion = types["geometry_msgs/msg/Quaternion"]
     positions, orientations = _positions_and_orientations(pose)
 
-    def make(row: int, stamp: int) -> Any:
+    def make_transform_message(row: int, stamp: int) -> Any:
         place = transform(vector(*positions[row]), quaternion(*orientations[row]))
         return several([stamped(_header(types, stamp, WORLD), HULL, place)])
 
-    return Topic("/tf", kind, _complete_rows(pose), make)
+    return Topic("/tf", kind, _complete_rows(pose), make_transform_message)
 
 
 def _twist_topic(rates: Mapping[str, Array], types: Mapping[str, Any]) -> Topic:
@@ -141,18 +141,18 @@ def _twist_topic(rates: Mapping[str, Array], types: Mapping[str, Any]) -> Topic:
     linear = ros_vector(rates["u_mps"], rates["v_mps"], w).tolist()
     angular = ros_vector(p, q, rates["r_radps"]).tolist()
 
-    def make(row: int, stamp: int) -> Any:
+    def make_twist_message(row: int, stamp: int) -> Any:
         motion = body(vector(*linear[row]), vector(*angular[row]))
         return stamped(_header(types, stamp, HULL), motion)
 
-    return Topic("/twist", kind, _complete_rows(rates), make)
+    return Topic("/twist", kind, _complete_rows(rates), make_twist_message)
 
 
 def _number_topic(name: str, values: Array, types: Mapping[str, Any]) -> Topic:
     number = types[FLOAT]
     numbers = values.tolist()
 
-    def make(row: int, stamp: int) -> Any:
+    def make_number_message(row: int, stamp: int) -> Any:
         return number(numbers[row])
 
-    return Topic(name, FLOAT, np.isfinite(values), make)
+    return Topic(name, FLOAT, np.isfinite(values), make_number_message)

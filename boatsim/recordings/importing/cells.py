@@ -35,7 +35,7 @@ class Cells:
 
 
 def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
-    """Return the numbers of a column of texts.
+    """Convert the text cells of a table's column to numbers, dates to seconds, other words to nan.
 
     Args:
         cells: Texts of the column (N,).

@@ -42,7 +42,7 @@ DAY = 86400.0  # [s]
 
 
 def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> str | None:
-    """Return the name of the column with the times of the rows.
+    """Return the name of the column of a table that holds the times of its rows.
 
     It is the first column of a usual name whose values increase. Without one it is a column of
     dates, then one whose name contains a word for time, then one that counts since 1970. Values of
@@ -93,7 +93,7 @@ def _is_epoch(values: Array) -> bool:
 
 
 def times_in_seconds(name: str, values: Array) -> Array:
-    """Return times (N,) in s.
+    """Convert the times (N,) of a log to seconds, by their size or by the column's unit.
 
     Args:
         name: Name of the column, which gives the unit of times that are not since 1970; s by

@@ -31,7 +31,12 @@ from boatsim.recordings.importing.resample import (
     nearest_samples,
     row_times,
 )
-from boatsim.recordings.importing.several_logs import Span, aligned, begin_line, sources
+from boatsim.recordings.importing.several_logs import (
+    Span,
+    align_clocks,
+    file_begin_line,
+    file_spans,
+)
 from boatsim.recordings.importing.track import constant_heading_fault
 from boatsim.recordings.importing.waves import WaveProbes, wave_at
 from boatsim.recordings.notes import Notes
@@ -83,7 +88,7 @@ class _Work:
 def convert_log(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
 ) -> Recording:
-    """Return the recording of a log.
+    """Convert a log to a recording, with the signals that a map assigns to the columns.
 
     Args:
         log: The log.
@@ -95,9 +100,9 @@ def convert_log(
         BadInput: One line with the key of the map for a signal that does not exist or can not be
             converted.
     """
-    log = aligned(_with_time_of_map(log, map, file), map.begins, file)
+    log = align_clocks(_with_time_of_map(log, map, file), map.begins, file)
     work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
-    work.spans = sources(log)
+    work.spans = file_spans(log)
     work.begin = min((span.begin for span in work.spans.values()), default=0.0)
     if map.position:
         _add_position(work, map.position)
@@ -194,7 +199,7 @@ def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
         if source not in names:
             raise BadInput(f"{file}: {unknown_name_message('time: file', source, sorted(names))}")
         clock, how = _signal(_Work(log, file, map, {}), "time", text)
-        t = how.of(clock.values)
+        t = how.convert(clock.values)
         for name, signal in signals.items():
             if signal.source == source and len(signal.values) == len(t):
                 signals[name] = replace(signal, t=t)
@@ -209,7 +214,7 @@ def _column(work: _Work, name: str, what: str | Range | Curve | Allocation) -> t
         t, values = _term(work, name, f"columns.{name}", what)
     if isinstance(what, Allocation):
         _remark_limits(work, f"{name}: the sum of its terms", values, what)
-        return t, what.of(values)
+        return t, what.convert(values)
     return t, values
 
 
@@ -217,15 +222,15 @@ def _term(work: _Work, name: str, key: str, what: str | Range | Curve) -> tuple[
     """Times (N,) [s] and values (N,) of one signal and its conversion."""
     if isinstance(what, str):
         signal, how = _signal(work, key, what)
-        return signal.t, how.of(signal.values)
+        return signal.t, how.convert(signal.values)
     signal, how = _signal(work, f"{key}.signal", what.signal)
-    values = how.of(signal.values)
+    values = how.convert(signal.values)
     _remark_limits(work, name, values, what)
-    return signal.t, what.of(values)
+    return signal.t, what.convert(values)
 
 
 def _remark_limits(work: _Work, name: str, values: Array, what: Range | Curve | Allocation) -> None:
-    lowest, highest = what.ends
+    lowest, highest = what.unclipped_range
     if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(
             f"{name}: {beyond} of {len(values)} samples are outside {lowest:g} to "
@@ -261,7 +266,7 @@ def _wave(work: _Work, name: str, given: WaveProbes) -> tuple[Array, Array]:
     for signal, how in signals:
         if not np.array_equal(signal.t, t, equal_nan=True):
             raise BadInput(f"{work.file}: {where}: allowed are probes with the same times")
-        elevations.append(how.of(signal.values))
+        elevations.append(how.convert(signal.values))
         measured &= np.isfinite(elevations[-1])
     t = t[measured]
     steps = np.diff(t)
@@ -282,7 +287,7 @@ def _add_position(work: _Work, position: Position) -> None:
             f"{work.file}: position: latitude and longitude are of two streams; allowed are "
             "those of one"
         )
-    t, lat, lon = north.t, how_north.of(north.values), how_east.of(east.values)
+    t, lat, lon = north.t, how_north.convert(north.values), how_east.convert(east.values)
     there = np.isfinite(t) & np.isfinite(lat) & np.isfinite(lon)
     if there.any() and max(np.abs(lat[there]).max() / 0.5, np.abs(lon[there]).max()) > np.pi + 1e-9:
         largest = float(np.abs(lat[there]).max())
@@ -486,9 +491,9 @@ def _spans_hint(work: _Work) -> str:
     """The spans of several files, and the line that shifts one of them."""
     if len(work.spans) < 2:
         return ""
-    spans = [f"{name} {span.words()}" for name, span in work.spans.items()]
-    last = list(work.spans)[-1]
-    return f" ({'; '.join(spans)}); if a clock is wrong, write into {work.file}: {begin_line(last)}"
+    spans = [f"{name} {span.in_words()}" for name, span in work.spans.items()]
+    line = file_begin_line(list(work.spans)[-1])
+    return f" ({'; '.join(spans)}); if a clock is wrong, write into {work.file}: {line}"
 
 
 def _remark_spans(work: _Work, rows: Array) -> None:
@@ -498,7 +503,7 @@ def _remark_spans(work: _Work, rows: Array) -> None:
             before, after = rows[0] - span.begin, span.end - rows[-1]
             file = work.log.path.with_name(name)
             work.remarks.append(
-                f"{file}: {span.words()}; {max(before, 0.0):.3g} s before and "
+                f"{file}: {span.in_words()}; {max(before, 0.0):.3g} s before and "
                 f"{max(after, 0.0):.3g} s after the rows are left out"
             )
 
@@ -640,14 +645,14 @@ def recording_notes_text(
         key = f'"{_quote(key)}"'
     lines = [f"[runs.{key}]", f'vessel = "{_quote(vessel)}"']
     if use:
-        lines.append(use_line(use))
+        lines.append(use_entry_line(use))
     if fix:
         lines.append(f'facts.position_fix = "{fix}"')
     return "\n".join(lines) + "\n"
 
 
-def use_line(use: Sequence[tuple[float, float]]) -> str:
-    """Return the line of a recording.toml that selects parts of a recording."""
+def use_entry_line(use: Sequence[tuple[float, float]]) -> str:
+    """Return the line `use = [...]` of a recording.toml, which selects parts of a recording."""
     return f"use = {list(map(list, use))}"
 
 

@@ -121,7 +121,7 @@ def _year_last(texts: Sequence[str]) -> Callable[[str], float]:
     if pairs and pairs[0]["mark"] == "/" and not any(int(m["first"]) > 12 for m in pairs):
         month_first = True  # the form of the United States
 
-    def read(text: str) -> float:
+    def seconds_from_date(text: str) -> float:
         found = YEAR_LAST.fullmatch(text)
         if not found:
             return float("nan")
@@ -130,7 +130,7 @@ def _year_last(texts: Sequence[str]) -> Callable[[str], float]:
             day, month = month, day
         return _seconds(found, int(found["year"]), month, day)
 
-    return read
+    return seconds_from_date
 
 
 def _named_month(text: str) -> float:

@@ -68,8 +68,8 @@ class MemoryBudget:
     def __init__(self, path: Path) -> None:
         self.path, self.values = path, 0
 
-    def take(self, values: int, signals: int = 0) -> None:
-        """Count values and signals. Raises BadInput for too many."""
+    def count_values(self, values: int, signals: int = 0) -> None:
+        """Count values and signals that a log reader keeps. Raises BadInput for too many."""
         self.values += values
         if self.values > MAX_VALUES:
             raise file_error(

@@ -138,12 +138,12 @@ class Map(Table):
 
 
 def read_map(path: Path) -> Map:
-    """Return the map of a file. Raises BadInput."""
+    """Read a map from log signals to columns from its file. Raises BadInput."""
     return parse_map(read_toml(path), str(path))
 
 
 def parse_map(table: Mapping[str, object], file: str) -> Map:
-    """Return the map of the content of a file. Raises BadInput."""
+    """Return the map of log signals that a table read from a file contains. Raises BadInput."""
     try:
         return validate_table(Map, table, file)
     except BadInput as error:

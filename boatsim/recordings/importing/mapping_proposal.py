@@ -14,8 +14,8 @@ from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
 from boatsim.recordings.importing.effort_allocation import EFFORTS, allocation_lines
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
-from boatsim.recordings.importing.motion_evidence import with_evidence_of_motion
-from boatsim.recordings.importing.several_logs import sources, unaligned
+from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
+from boatsim.recordings.importing.several_logs import file_spans, files_with_unrelated_clocks
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
@@ -27,13 +27,13 @@ from boatsim.recordings.importing.signal_classification import (
     side_from_tokens,
     tokenize_name,
 )
-from boatsim.recordings.importing.single_axis import has_load, is_load_of_channel
+from boatsim.recordings.importing.single_axis import is_load_of_channel, names_load
 from boatsim.recordings.importing.track import (
     Track,
-    contradiction,
     rate_in_degrees,
+    reason_not_measured,
+    reason_poses_unusable,
     track_of,
-    unusable_poses,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.notes import unit_of
@@ -80,7 +80,7 @@ def signal_table(log: Log, body: Body = UNKNOWN_BODY) -> list[str]:
         body: The vessel.
     """
     columns: dict[str, str] = {}
-    for g in with_evidence_of_motion(classify_signals(log, body), log):
+    for g in correct_classification_by_motion(classify_signals(log, body), log):
         columns[g.name] = g.column
     rows = [("signal", "unit", "Hz", "samples", "lowest", "highest", "probably")]
     listed = list(log.signals)
@@ -158,10 +158,10 @@ def propose_map(
     known, used_signals = _stated_columns(log, stated or {})
     best: dict[str, list[Classification]] = {}
     classified = classify_signals(log, Body([d.name for d in drives], dof, turns_over))
-    for g in with_evidence_of_motion(classified, log):
+    for g in correct_classification_by_motion(classified, log):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
-    if reason := unusable_poses(log, best, "yaw" in dof):
+    if reason := reason_poses_unusable(log, best, "yaw" in dof):
         raise file_error(log.path, reason)
     track = track_of(best)
     best, doubtful = _without_contradictions(_with_rate_unit(best), track)
@@ -177,7 +177,7 @@ def propose_map(
         turning, unit = Turning(best, log.frame == "ENU"), _RevolutionUnit(track, approach_speed)
         commands, driven = _command_lines(best, open_drives, turning, unit)
     # a measured force acts between the rows, too: its samples are all kept
-    measured = any(has_load(tokenize_name(drive.name)) for drive in drives)
+    measured = any(names_load(tokenize_name(drive.name)) for drive in drives)
     lines = [
         "# Proposed from the names, units and ranges of the signals in the log: check every line.",
         f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"',
@@ -257,7 +257,7 @@ def _without_contradictions(
     for column in ("psi_rad", *MOTION_COLUMNS):
         for g in best.get(column, []):
             heading = next(iter(kept.get("psi_rad", [])), None)
-            if reason := contradiction(column, g, track, heading):
+            if reason := reason_not_measured(column, g, track, heading):
                 kept[column] = [other for other in kept[column] if other is not g]
                 lines.append(f"# {column} is not {_without_control_characters(g.name)}: {reason}")
         if column in kept and not kept[column]:
@@ -267,12 +267,12 @@ def _without_contradictions(
 
 def _begin_lines(log: Log) -> list[str]:
     """Lines that state when the further files of a run begin, if their clocks do not show it."""
-    spans = sources(log)
+    spans = file_spans(log)
     if len(spans) < 2:
         return []
     first = next(iter(spans))
     lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
-    for name in unaligned(spans, {}):
+    for name in files_with_unrelated_clocks(spans, {}):
         lines.append(f"begins.{toml_key(name)} = 0.0  # CHECK: no common clock, 0 is a guess")
     if len(lines) == 1:
         return []

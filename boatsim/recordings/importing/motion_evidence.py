@@ -29,7 +29,9 @@ TOLERANCE = 1.5  # factor between both sizes; units differ by 57
 MIN_SAMPLES = 20
 
 
-def with_evidence_of_motion(found: Sequence[Classification], log: Log) -> list[Classification]:
+def correct_classification_by_motion(
+    found: Sequence[Classification], log: Log
+) -> list[Classification]:
     """Return the classification of the signals of a log, corrected by what they show together.
 
     Args:

@@ -62,7 +62,7 @@ class Topic:
     logged: array = field(default_factory=lambda: array("d"))  # type: ignore[type-arg]
     columns: dict[str, array] = field(default_factory=dict)  # type: ignore[type-arg]
 
-    def add(self, when: float, data: bytes, room: MemoryBudget) -> None:
+    def add_message(self, when: float, data: bytes, room: MemoryBudget) -> None:
         """Add a message that was logged at `when` [s].
 
         Raises ValueError if it does not fit its definition.
@@ -74,7 +74,7 @@ class Topic:
             column.extend([float("nan")] * (rows - len(column)))
             column.append(value)
         self.logged.append(when)
-        room.take(len(found) + 1, len(self.columns))
+        room.count_values(len(found) + 1, len(self.columns))
 
 
 def parse_definitions(text: str, root: str) -> dict[str, list[MessageField]]:
@@ -289,7 +289,7 @@ def log_from_topics(path: Path, topics: Mapping[str, Topic], remarks: list[str])
         units = dict(zip(columns, map(_unit_of, columns), strict=True))
         signals |= stream_signals(name, t, columns, units)
         if len(signals) > MAX_SIGNALS:
-            MemoryBudget(path).take(0, len(signals))
+            MemoryBudget(path).count_values(0, len(signals))
     return Log(path, with_euler_angles(signals), "ENU", tuple(dict.fromkeys(remarks)))
 
 

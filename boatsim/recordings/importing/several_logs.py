@@ -26,7 +26,7 @@ class Span:
         """Whether the times are seconds since 1970."""
         return YEAR_2000 < self.begin < YEAR_2100
 
-    def words(self) -> str:
+    def in_words(self) -> str:
         """Return the span in words: UTC to the second, or seconds."""
         if not self.is_utc:
             return f"{self.begin:.6g} to {self.end:.6g} s"
@@ -72,8 +72,8 @@ def open_logs(paths: Sequence[Path]) -> Log:
     return Log(logs[0].path, signals, "".join(frames), tuple(remarks))
 
 
-def sources(log: Log) -> dict[str, Span]:
-    """Return the name of each file of a log -> its span; the first file is first."""
+def file_spans(log: Log) -> dict[str, Span]:
+    """Return the time span of each file of a log, by the file's name; the first file is first."""
     ends: dict[str, Span] = {}
     for signal in log.signals.values():
         finite = signal.t[np.isfinite(signal.t)]
@@ -87,7 +87,9 @@ def sources(log: Log) -> dict[str, Span]:
     return ends
 
 
-def unaligned(spans: Mapping[str, Span], begins: Mapping[str, float]) -> list[str]:
+def files_with_unrelated_clocks(
+    spans: Mapping[str, Span], begins: Mapping[str, float]
+) -> list[str]:
     """Return the files whose clock has no known relation to that of the first file."""
     first, *others = spans
     found = []
@@ -97,8 +99,8 @@ def unaligned(spans: Mapping[str, Span], begins: Mapping[str, float]) -> list[st
     return found
 
 
-def aligned(log: Log, begins: Mapping[str, float], file: str) -> Log:
-    """Return a log of several files on the clock of the first one.
+def align_clocks(log: Log, begins: Mapping[str, float], file: str) -> Log:
+    """Return a log of several files with all times on the clock of the first file.
 
     Args:
         log: The log.
@@ -108,17 +110,17 @@ def aligned(log: Log, begins: Mapping[str, float], file: str) -> Log:
     Raises:
         BadInput: A file has neither UTC nor a begin, or the map names a file that is not there.
     """
-    spans = sources(log)
+    spans = file_spans(log)
     for name in begins:
         if name not in spans or name == next(iter(spans)):
             others = list(spans)[1:]
             raise BadInput(f"{file}: {unknown_name_message('begins: file', name, others)}")
     first = next(iter(spans), "")
-    for name in unaligned(spans, begins) if spans else ():
+    for name in files_with_unrelated_clocks(spans, begins) if spans else ():
         raise BadInput(
-            f"{name}: its times ({spans[name].words()}) and those of {first} "
-            f"({spans[first].words()}) are not both UTC; write into {file}: "
-            f"{begin_line(name)}"
+            f"{name}: its times ({spans[name].in_words()}) and those of {first} "
+            f"({spans[first].in_words()}) are not both UTC; write into {file}: "
+            f"{file_begin_line(name)}"
         )
     shifts: dict[str, float] = {}
     for name, begin in begins.items():
@@ -126,7 +128,7 @@ def aligned(log: Log, begins: Mapping[str, float], file: str) -> Log:
     return _shifted(log, lambda signal: signal.t + shifts.get(signal.source, 0.0))
 
 
-def begin_line(name: str) -> str:
+def file_begin_line(name: str) -> str:
     """Return the line of a map that states when a file begins, with a place for the number."""
     return f'[begins] / "{name}" = SECONDS (after the first file begins)'
 

@@ -52,7 +52,7 @@ def is_load_of_channel(tokens: Collection[str], words: Collection[str]) -> bool:
     return bool(LOADS & set(tokens) & set(words))
 
 
-def has_load(words: Collection[str]) -> bool:
+def names_load(words: Collection[str]) -> bool:
     """Return whether the words of a name contain that of a load, such as torque."""
     return not LOADS.isdisjoint(words)
 

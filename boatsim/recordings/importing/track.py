@@ -62,7 +62,7 @@ def values_in_si(g: Classification) -> tuple[Array, Array]:
     """Return times (N,) [s] and values (N,) of a signal in SI units, sorted, without nan."""
     values = g.signal.values
     if g.word:
-        values = parse(f"x * {g.word}", ()).of(values)
+        values = parse(f"x * {g.word}", ()).convert(values)
     known = np.isfinite(values) & np.isfinite(g.signal.t)
     t, rows = np.unique(g.signal.t[known], return_index=True)
     return t, values[known][rows]
@@ -134,7 +134,7 @@ def _track(t: Array, north: Array, east: Array) -> Track:
     )
 
 
-def contradiction(
+def reason_not_measured(
     column: str, g: Classification, track: Track | None, heading: Classification | None
 ) -> str:
     """Return why a signal is no measurement of a motion, "" if nothing contradicts it.
@@ -229,7 +229,7 @@ def rate_in_degrees(g: Classification, heading: Classification) -> bool | None:
     return bool(ratio > np.sqrt(np.degrees(1.0)))
 
 
-def unusable_poses(
+def reason_poses_unusable(
     log: Log, best: Mapping[str, Sequence[Classification]], needs_heading: bool
 ) -> str:
     """Return why a log has no poses that can be used, "" if it may have.
@@ -258,7 +258,7 @@ def unusable_poses(
 def _is_unmeasured(g: Classification, track: Track | None) -> bool:
     if float(np.ptp(values_in_si(g)[1])) > 0.0:
         return False
-    return track is None or contradiction("psi_rad", g, track, None) != ""
+    return track is None or reason_not_measured("psi_rad", g, track, None) != ""
 
 
 def _constant_signals(log: Log, last: Sequence[str]) -> dict[str, Signal]:

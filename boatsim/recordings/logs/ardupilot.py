@@ -106,7 +106,7 @@ def _log(path: Path, index: Any) -> Log:
     streams: dict[tuple[str, int], dict[str, Signal]] = {}
     skipped: list[str] = []
     for number, format in index.formats.items():
-        room.take(len(index.offsets[number]) * len(format.columns), len(streams))
+        room.count_values(len(index.offsets[number]) * len(format.columns), len(streams))
         rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
         if rows is None:
             skipped.append(format.name)

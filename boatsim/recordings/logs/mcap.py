@@ -62,7 +62,7 @@ def _read_topics(path: Path, topics: dict[str, Topic], remarks: list[str]) -> No
         ):
             name = names[record.channel_id]
             try:
-                topics[name].add(record.log_time * 1e-9, record.data, room)
+                topics[name].add_message(record.log_time * 1e-9, record.data, room)
             except ValueError as error:
                 remarks.append(
                     f"{path}: messages of {name} that can not be read are left out ({error})"

@@ -121,7 +121,7 @@ def _sentences(
         if valid:
             for signal, (attribute, _) in FIELDS[name].items():
                 numbers[signal] = _float(sentence, attribute)
-        room.take(len(numbers) + 1)
+        room.count_values(len(numbers) + 1)
         if name in NUMBERED:
             name += f"[{_float(sentence, NUMBERED[name]):.0f}]"
         found.append((when, name, numbers))

@@ -111,7 +111,7 @@ def _read_topics(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[s
     for connection, when, data in bag.messages(connections=read):
         if len(data) <= MAX_SIZE:
             try:
-                topics[connection.topic].add(when * 1e-9, bytes(data), room)
+                topics[connection.topic].add_message(when * 1e-9, bytes(data), room)
             except ValueError as error:
                 remarks.append(
                     f"{path}: messages of {connection.topic} that can not be read are left out "

@@ -94,7 +94,7 @@ def _parquet(path: Path) -> dict[str, Array]:
 
     try:
         file = parquet.ParquetFile(path)
-        MemoryBudget(path).take(
+        MemoryBudget(path).count_values(
             file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns
         )
         numeric = [f.name for f in file.schema_arrow if _is_number(pa.types, f.type)]
@@ -247,7 +247,7 @@ def _read_fast(path: Path, head: _Header) -> dict[str, Cells] | None:
             ),
         )
         for piece in pieces:
-            room.take(piece.num_rows * piece.num_columns, piece.num_columns)
+            room.count_values(piece.num_rows * piece.num_columns, piece.num_columns)
             batches.append(piece)
     except (pa.ArrowException, OSError, ValueError):
         return None
@@ -282,7 +282,7 @@ def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Cells], tup
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
     kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]
-    MemoryBudget(path).take(len(head.columns) * len(kept), len(head.columns))
+    MemoryBudget(path).count_values(len(head.columns) * len(kept), len(head.columns))
     rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
         raise file_error(path, "has a header and no rows")

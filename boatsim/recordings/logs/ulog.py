@@ -98,7 +98,7 @@ def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-a
         for name, values in topic.data.items():
             if "timestamp" not in name and "_padding" not in name:
                 fields[name] = values
-        room.take(len(t) * len(fields), len(signals) + len(fields))
+        room.count_values(len(t) * len(fields), len(signals) + len(fields))
         known = UNITS | TOPICS.get(topic.name, {})
         units: dict[str, str] = {}
         for name in fields:

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
-from boatsim.recordings.notebook.labels import shown_unit, words_of
+from boatsim.recordings.notebook.labels import column_in_words, display_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,19 +64,19 @@ def signal_panels(t: Array, signals: Mapping[str, Array]) -> list[Panel]:
     """
     groups: dict[str, list[str]] = {}
     for name in signals:
-        kind = f"other {shown_unit(name)[0]}"
+        kind = f"other {display_unit(name)[0]}"
         if name in POSE:
             kind = name
         elif name in RATES:
-            kind = f"rate {shown_unit(name)[0]}"
+            kind = f"rate {display_unit(name)[0]}"
         groups.setdefault(kind, []).append(name)
     panels = []
     for names in groups.values():
         curves = []
         for name in names:
-            unit, factor = shown_unit(name)
+            unit, factor = display_unit(name)
             held = name not in (*POSE, *RATES)
-            curves.append(Curve(words_of(name), t, factor * signals[name], held=held))
+            curves.append(Curve(column_in_words(name), t, factor * signals[name], held=held))
         label = f"[{unit}]"
         if len(names) == 1:
             label = f"{curves[0].name} [{unit}]"

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from html import escape
 
 
-def facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
-    """Return a title and a table of two columns.
+def html_facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
+    """Return a title and a two-column table of facts as HTML.
 
     Args:
         title: Text above the table.
@@ -17,8 +17,8 @@ def facts_table(title: str, facts: Sequence[tuple[str, str]]) -> str:
     return f"<p><b>{escape(title)}</b></p><table>{''.join(rows)}</table>"
 
 
-def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table with a header; without rows the result is "".
+def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table with a header as HTML; without rows the result is "".
 
     Args:
         header: Texts of the header.

@@ -21,7 +21,7 @@ WORDS = {
 IN_DEGREES = {"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"}
 
 
-def words_of(name: str) -> str:
+def column_in_words(name: str) -> str:
     """Return the name of a column in words, without its unit: `thrust_port_N` -> thrust port."""
     if name in WORDS:
         return WORDS[name]
@@ -30,7 +30,7 @@ def words_of(name: str) -> str:
     return name.replace("_", " ")
 
 
-def shown_unit(name: str) -> tuple[str, float]:
+def display_unit(name: str) -> tuple[str, float]:
     """Return the unit in which a person reads a column, and the factor to it from the SI unit.
 
     Args:

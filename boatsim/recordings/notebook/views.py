@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.notebook.figures import TRACK, Curve, draw_figure, signal_panels
-from boatsim.recordings.notebook.html_table import facts_table
+from boatsim.recordings.notebook.html_table import html_facts_table
 from boatsim.recordings.notebook.replay import replay_frame, track_of
 from boatsim.recordings.notes import Notes
 
@@ -76,7 +76,7 @@ def recording_html(name: str, t: Array, signals: Mapping[str, Array], notes: Not
     if len(t):
         span = f"{len(t)} rows from {t[0]:.6g} to {t[-1]:.6g} s"
     facts += [("rows", span), ("columns", _listed(["t_s", *signals]))]
-    table = facts_table(f"Recording {name}", facts)
+    table = html_facts_table(f"Recording {name}", facts)
     track = track_of(name, COLOUR, t, signals)
     if track is None:
         return table

@@ -9,7 +9,7 @@ from boatsim.sweeps.workers.base import Task, Work
 def run_in_this_process(
     work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
-    """Perform tasks; see `Backend`.
+    """Perform tasks one after another in this process; see `Backend`.
 
     Args:
         work: Function that performs a task.

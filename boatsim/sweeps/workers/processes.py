@@ -101,7 +101,7 @@ class Processes:
 def _start_worker(work: Work, task: Task) -> Worker:
     own, other = CONTEXT.Pipe()
     process = CONTEXT.Process(
-        target=_worker_main, args=(other, work, trust.current_trust()), daemon=True
+        target=_worker_main, args=(other, work, trust.trusted_folder_list()), daemon=True
     )
     with ignored_signals():  # Only the parent process handles signals; the workers end with it.
         process.start()

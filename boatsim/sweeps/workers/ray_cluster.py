@@ -59,7 +59,7 @@ def _perform_tasks(
     ray: Any, work: Work, tasks: Iterable[Task], stop: Callable[[], bool]
 ) -> Iterator[tuple[int, Entry | None]]:
     remote = ray.remote(num_cpus=1, max_retries=MOST_RESTARTS)(_perform_task)
-    trusted = trust.current_trust()
+    trusted = trust.trusted_folder_list()
     pending = iter(tasks)
     running: dict[Any, Task] = {}
     while not stop():

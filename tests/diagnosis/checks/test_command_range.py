@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.checks.command_range import with_range_of
+from boatsim.diagnosis.checks.command_range import widen_channel_ranges
 from boatsim.diagnosis.checks.command_unit import check_command_unit
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
 from boatsim.diagnosis.config import DEFAULT
@@ -45,9 +45,9 @@ def test_a_command_a_little_beyond_the_range_is_a_mended_finding_and_no_other_un
 
 
 def test_the_diagnosis_uses_the_range_of_the_log():
-    wide = with_range_of(OTTER, [recording(125.0 * SWING)])
+    wide = widen_channel_ranges(OTTER, [recording(125.0 * SWING)])
     assert wide.limits()["n_port_radps"] == pytest.approx((-125.0, 125.0), rel=1e-3)
-    assert with_range_of(OTTER, [recording(50.0 * SWING)]) is OTTER
+    assert widen_channel_ranges(OTTER, [recording(50.0 * SWING)]) is OTTER
     assert replace(wide, commands=OTTER.commands) == OTTER
 
 

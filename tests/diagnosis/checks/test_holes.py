@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.checks.holes import before_first_hole, check_holes
+from boatsim.diagnosis.checks.holes import check_holes, part_before_first_hole
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Recording
@@ -42,9 +42,9 @@ def test_a_short_interval_without_rows_is_no_hole_and_a_larger_hull_has_longer_o
 
 def test_reinterpretations_are_compared_on_one_side_of_a_hole(boat: Vessel) -> None:
     """Over a hole the model follows one command, and any other heading may fit as well."""
-    before = before_first_hole(with_hole(40.0, 60.0), boat, CHECKS)
+    before = part_before_first_hole(with_hole(40.0, 60.0), boat, CHECKS)
     assert before.t[0] == 0.0 and before.t[-1] == pytest.approx(40.0)
-    behind = before_first_hole(with_hole(2.0, 60.0), boat, CHECKS)  # 21 rows before it
+    behind = part_before_first_hole(with_hole(2.0, 60.0), boat, CHECKS)  # 21 rows before it
     assert behind.t[0] == pytest.approx(60.0)
     whole = with_hole(40.0, 41.0)
-    assert len(before_first_hole(whole, boat, CHECKS)) == len(whole)
+    assert len(part_before_first_hole(whole, boat, CHECKS)) == len(whole)

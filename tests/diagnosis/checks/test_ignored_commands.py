@@ -37,7 +37,7 @@ def findings(tmp_path: Path, speed: float | None) -> list[Finding]:
     for i in range(3):
         files.append(tmp_path / f"run_{i + 1}.csv")
         write_csv(Recording(f"run_{i + 1}", body.times, signals[i]), files[-1])
-    loaded = loading.load(Request(files[:2], files[2:], vessel=str(vessel)))
+    loaded = loading.load_recordings(Request(files[:2], files[2:], vessel=str(vessel)))
     problem = set_up_estimation_problem(loaded, with_candidates=False).problem
     fit = fit_baseline(problem).nominal
     return check_ignored_commands(problem, fit, problem.recordings, ["one", "two"])

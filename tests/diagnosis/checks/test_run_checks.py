@@ -16,9 +16,9 @@ from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
-from boatsim.diagnosis.checks.finding import Change, apply_changes, column_lines
+from boatsim.diagnosis.checks.finding import Change, apply_corrections, columns_table_lines
 from boatsim.diagnosis.checks.position_jumps import jump_rows
-from boatsim.diagnosis.loading import open_recording, vessel_for
+from boatsim.diagnosis.loading import open_recording, vessel_of_recording_file
 from boatsim.diagnosis.log_check import check_files
 from boatsim.diagnosis.pipeline import diagnose
 from boatsim.errors import BadInput
@@ -290,12 +290,12 @@ def test_a_line_says_what_the_change_does(change: Change) -> None:
     t = np.linspace(0.0, 1.0, 30)
     raw = {"heading_deg": 30.0 * t, "east": 7.0 * t}
     sources = {"psi_rad": parse("heading_deg * deg"), "y_m": parse("east * ft")}
-    ours = {name: e.of(raw[e.signal]) for name, e in sources.items()}
-    line = column_lines([change], sources)[0]
+    ours = {name: e.convert(raw[e.signal]) for name, e in sources.items()}
+    line = columns_table_lines([change], sources)[0]
     name, _, text = line.partition(" = ")
     made = parse(text.strip('"'))
-    wanted = apply_changes(Recording("run", t, ours), [change])[change.column]
-    assert name == change.column and np.allclose(made.of(raw[made.signal]), wanted, atol=1e-9)
+    wanted = apply_corrections(Recording("run", t, ours), [change])[change.column]
+    assert name == change.column and np.allclose(made.convert(raw[made.signal]), wanted, atol=1e-9)
 
 
 def test_all_mistakes_of_a_file_are_said_at_once(tmp_path: Path) -> None:
@@ -334,7 +334,8 @@ def test_the_vessel_of_a_recording_toml_lies_where_that_file_says(
     (tmp_path / "runs" / "recording.toml").write_text('vessel = "../boats/mine"\n')
     monkeypatch.chdir(Path(__file__).parents[2])
     assert (
-        vessel_for(path, None, []).file == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()
+        vessel_of_recording_file(path, None, []).file
+        == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()
     )
 
 

@@ -14,7 +14,7 @@ from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnosis.candidates import instantiate_neutral_effect, library_for
+from boatsim.diagnosis.candidates import candidate_library, instantiate_neutral_effect
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
@@ -60,7 +60,7 @@ CONFUSABLE = {  # truth with its values, rival, first recording in which the two
 @cache
 def program() -> Program:
     boat = vessel.load_vessel("trial_boat")
-    return Program(boat, library_for(boat).compiled)
+    return Program(boat, candidate_library(boat).compiled_effects)
 
 
 def recorded(
@@ -69,11 +69,15 @@ def recorded(
     """The boat with one entry acting, driven through a script of (seconds, commands), seen by a
     noisy camera."""
     rng = np.random.default_rng(4)
-    code, values, on = program().simulation, program().values(), program().effect_switches([name])
+    code, values, on = (
+        program().simulation_functions,
+        program().values(),
+        program().effect_switches([name]),
+    )
     for key, value in settings.items():
         values[program().parameter_index(name, key)] = value
     rows = np.concatenate([np.tile(step[1:], (round(step[0] * RATE), 1)) for step in script])
-    memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
+    memory, act = np.zeros(program().memory_size), np.zeros(program().actuator_signal_size)
     code.settle_actuators(rows[0], memory, values, on, act)
     out = np.zeros((len(rows) + 1, 6))
     code.rollout(
@@ -137,7 +141,7 @@ def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
     )[other]
     plan = suggested(case)
     assert plan.separates == (name, other)
-    assert plan.expected_gain > max(3.0, 2.0 * again)  # 3 nats: no longer look-alikes
+    assert plan.expected_log_bayes_factor > max(3.0, 2.0 * again)  # 3 nats: no longer look-alikes
 
 
 def test_wind_is_told_from_current_by_turning():
@@ -160,7 +164,7 @@ def test_the_worst_rival_counts():
     both = {"current": rival, "twin": winner}  # no manoeuvre tells a hypothesis from itself
     for plan in next_experiment.all_plans(problem, winner, both):
         assert (
-            plan.expected_gain
+            plan.expected_log_bayes_factor
             == min(plan.log_bayes_factors.values())
             == pytest.approx(0.0, abs=1e-6)
         )
@@ -177,7 +181,7 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     problem = Problem(
         [map_recording(first, Program(boat))], levels, {"damping": 0.3, "restoring": 0.01}
     )
-    free = problem.parameters(())
+    free = problem.free_parameters(())
     assert [f.name for f in free] == ["roll", "stiffness"]
     winner, rival = (
         Fit((), free, np.array(theta), np.diag(np.square(sd)), levels, 0.0)
@@ -188,7 +192,7 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     n, h, P0 = (
         len(found.recording.times),
         0.2,
-        found.recording.initial.covariance + np.diag([1e-6, 0.0, 4.0]),
+        found.recording.initial_state_prior.covariance + np.diag([1e-6, 0.0, 4.0]),
     )
 
     def dense(theta: Array) -> tuple[Array, Array]:
@@ -274,7 +278,7 @@ def test_a_manoeuvre_in_which_a_rival_diverges_is_no_plan(monkeypatch):
     monkeypatch.setattr(next_experiment, "expected_log_bayes_factors", first_diverges)
     plans = next_experiment.all_plans(problem, winner, {"rival": rival})
     assert len(plans) == len(calls) - 1
-    assert all(np.isfinite(plan.expected_gain) for plan in plans)
+    assert all(np.isfinite(plan.expected_log_bayes_factor) for plan in plans)
 
 
 @pytest.mark.parametrize("case", CONFUSABLE)
@@ -282,7 +286,7 @@ def test_no_manoeuvre_is_expected_to_speak_against_the_truth(case):
     """A Kullback-Leibler divergence is never negative."""
     problem, winner, rival = tie(case)
     for plan in next_experiment.all_plans(problem, winner, {"rival": rival}):
-        assert plan.expected_gain > -0.05, (
+        assert plan.expected_log_bayes_factor > -0.05, (
             plan.manoeuvre
         )  # noise and force levels of the two are taken for the same
 

@@ -23,7 +23,7 @@ from boatsim.diagnosis.locate.missing_force import (
 from boatsim.diagnosis.locate.periodicity import most_significant_peak
 from boatsim.diagnosis.locate.region_candidates import tank_walls
 from boatsim.diagnosis.locate.region_tests import ScoreStatistics, sum_statistics
-from boatsim.diagnosis.locate.regions import Region, regions
+from boatsim.diagnosis.locate.regions import Region, find_missing_force_conditions
 from boatsim.diagnosis.locate.residual_structure import (
     candidate_regressors,
     find_structure,
@@ -149,26 +149,26 @@ def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
 def evidence(y: Array) -> ScoreStatistics:
     S = shapes()
     named = {n: (S[..., k],) for k, n in enumerate(("sine", "square", "decay"))}
-    return ScoreStatistics.of(named, latent(y))
+    return ScoreStatistics.from_latent_force(named, latent(y))
 
 
 def test_p_values_are_uniform_where_nothing_acts_and_small_where_it_does() -> None:
     rng = np.random.default_rng(4)
     y = rng.multivariate_normal(np.zeros(N), CHAIN.spread, size=400)
-    p = [evidence(row).test("square", ["sine", "decay"]).p_value for row in y]
+    p = [evidence(row).score_test("square", ["sine", "decay"]).p_value for row in y]
     assert kstest(p, "uniform").pvalue > 0.01
     acts = sum_statistics(
         [evidence(row + 3.0 * CHAIN.responds @ shapes()[:, 0, 1]) for row in y[:20]],
         ["square", "sine"],
     )
-    result = acts.test("square", ["sine"])
+    result = acts.score_test("square", ["sine"])
     assert result.p_value < 1e-6 and result.factors[0] == pytest.approx(3.0, rel=0.1)
     assert result.rms[0] == pytest.approx(3.0 * np.sqrt(np.mean(shapes()[:, 0, 1] ** 2)), rel=0.1)
 
 
 def test_an_idea_that_the_others_already_say_is_no_finding() -> None:
     found = evidence(np.random.default_rng(2).multivariate_normal(np.zeros(N), CHAIN.spread))
-    assert found.test("sine", ["sine", "decay"]).p_value == 1.0
+    assert found.score_test("sine", ["sine", "decay"]).p_value == 1.0
 
 
 # ---- rhythm
@@ -205,7 +205,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 
 def found_in(missing: Missing, facts: dict[str, Any] | None = None) -> dict[str, Region]:
     problem, found = laid(*(sail(f"run_{k}", 20 + k, missing, facts)[0] for k in range(2)))
-    return {r.variable: r for r in regions(problem, found)}
+    return {r.variable: r for r in find_missing_force_conditions(problem, found)}
 
 
 def swelling(t: float, y: Array, command: Array) -> Array:
@@ -377,9 +377,9 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
         {"damping": 0.05, "restoring": 0.02},
     )
     found = fit_baseline(problem)[1]
-    assert [r.variable for r in regions(problem, found)][: 1 if name else None] == (
-        [name] if name else []
-    )
+    assert [r.variable for r in find_missing_force_conditions(problem, found)][
+        : 1 if name else None
+    ] == ([name] if name else [])
 
 
 # ---- structure in what is left over

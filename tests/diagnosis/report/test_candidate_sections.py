@@ -5,8 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from boatsim.diagnosis.report.candidate_sections import ranking, upper_limits
-from boatsim.diagnosis.report.experiment_section import is_optional, next_experiment
+from boatsim.diagnosis.report.candidate_sections import (
+    candidate_ranking_section,
+    upper_limits_section,
+)
+from boatsim.diagnosis.report.experiment_section import is_optional, next_experiment_section
 from boatsim.diagnosis.report.figures import missing_force_figures
 from boatsim.diagnosis.report.findings import Findings
 from boatsim.view.page_blocks import Table, Text
@@ -24,7 +27,7 @@ def sure(probability: float = 0.97, **changes: object) -> Findings:
 
 def verdicts(findings: Findings) -> dict[str, str]:
     """The verdicts of the ranking, by candidate."""
-    [best, *_] = ranking(findings)
+    [best, *_] = candidate_ranking_section(findings)
     assert isinstance(best, Table)
     return {row[0]: row[best.header.index("verdict")] for row in best.rows}
 
@@ -53,13 +56,13 @@ def test_the_evidence_of_a_quick_fit_that_may_have_failed_is_no_number() -> None
             {"name": "tether", "gain_nats": -975.0, "probability": 0.0},
         ]
     }
-    [_, statistics, _] = ranking(replace(findings, answer=answer))  # type: ignore
+    [_, statistics, _] = candidate_ranking_section(replace(findings, answer=answer))  # type: ignore
     assert isinstance(statistics, Table)
     assert [row[1] for row in statistics.rows] == ["63.4", "below −8.0"]
 
 
 def test_the_limit_of_an_effect_of_the_vessel_file_is_a_distance_from_it() -> None:
-    [table] = upper_limits(replace(planar(), own_effects=frozenset({"thrust_lag"})))
+    [table] = upper_limits_section(replace(planar(), own_effects=frozenset({"thrust_lag"})))
     assert isinstance(table, Table)
     limits = {row[0]: row[1] for row in table.rows}
     assert limits["thrust lag"] == "time constant 0.11 s more or less than in the vessel file"
@@ -80,7 +83,7 @@ def test_an_experiment_is_optional_only_if_the_answer_is_sure_and_it_tests_the_a
 def test_the_section_on_the_next_experiment_says_whether_it_is_needed(
     probability: float, optional: bool
 ) -> None:
-    texts = [b.words for b in next_experiment(sure(probability)) if isinstance(b, Text)]
+    texts = [b.words for b in next_experiment_section(sure(probability)) if isinstance(b, Text)]
     assert any("is optional" in text for text in texts) == optional
 
 

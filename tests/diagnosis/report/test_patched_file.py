@@ -68,7 +68,7 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     out, start = np.full((1, ROWS, 2 * nq), np.nan), np.zeros((1, 2 * nq))
     start[0, nq - 1 :] = 0.02
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
-    problem.program.functions.simulate_intervals(
+    problem.program.estimation_functions.simulate_intervals(
         Inputs(track.times, track.command_times, track.command_values),
         DEFAULT.filter.free_run_step,
         VesselNumbers(rigid_body_values(values), values, problem.program.effect_switches(acting)),
@@ -200,7 +200,7 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(
     boat = vessel.load_vessel(name)
     problem = problem_of(boat)
     found = recalibrated(problem, 0.5 * OFF)
-    free = problem.parameters(tuple(RELEASED[name]))
+    free = problem.free_parameters(tuple(RELEASED[name]))
     off = [x for values in RELEASED[name].values() for x in values]
     covariance = 1e-4 * np.eye(len(free))
     found = Fit(
@@ -231,7 +231,7 @@ def test_a_patched_file_says_how_far_off_its_numbers_may_be_and_the_next_one_say
 ) -> None:
     boat = vessel.load_vessel("trial_boat")
     problem = problem_of(boat)
-    free = problem.parameters(("thrust_gain_error",))
+    free = problem.free_parameters(("thrust_gain_error",))
     theta = np.array([1.05] * len(free))
     sd = 0.01 * np.arange(1.0, len(free) + 1.0)
     covariance = np.outer(sd, sd) * np.where(np.eye(len(free)), 1.0, 0.3)

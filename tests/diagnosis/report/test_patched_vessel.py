@@ -91,7 +91,7 @@ def test_engine_and_filter_agree_over_six_seconds(
     program, acting = diagnosis_program(replace(boat, found=tuple(laws)))
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
-    program.functions.simulate_intervals(
+    program.estimation_functions.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
         VesselNumbers(program.body, program.values(), program.effect_switches(acting)),

@@ -9,7 +9,7 @@ from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.loading import Loaded, Request
+from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.incomplete import (
@@ -21,9 +21,9 @@ from boatsim.diagnosis.report.incomplete import (
 )
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search import ranking as ranking_stage
-from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, addition_phrase
+from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_addition_to_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
-from boatsim.diagnosis.search.ranking import rank
+from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.work import CALL, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
@@ -38,56 +38,60 @@ def weak_astern(t: float, y: Array, command: Array) -> Array:
 
 
 @pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
     path = tmp_path_factory.mktemp("budget") / "run.csv"
     write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load(Request([path], vessel=BOAT.name), config=FAST)
+    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 def with_budget(work: int) -> DiagnosisConfig:
     return replace(FAST, select=replace(FAST.select, budget=work))
 
 
-def question_with(loaded: Loaded, config: DiagnosisConfig) -> Question:
+def question_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> Question:
     question = set_up_estimation_problem(loaded, config)
     return replace(question, candidates=CANDIDATES)
 
 
-def selection_with(loaded: Loaded, config: DiagnosisConfig) -> pipeline.Selection:
+def selection_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> pipeline.Selection:
     question = question_with(loaded, config)
-    return pipeline.select(question, pipeline.fit(question), loaded)
+    return pipeline.select_candidates(question, pipeline.fit_baseline_models(question), loaded)
 
 
-def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(loaded: Loaded) -> None:
+def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
+    loaded: LoadedRecordings,
+) -> None:
     problem = question_with(loaded, FAST).problem
     found = problem.nominal_hypothesis()
     on = problem.program.effect_switches()
     passes = problem.filter(found.free, found.theta, on, found.levels)
-    before = problem.filtered.work
+    before = problem.work_count.work
     problem.log_likelihood(found.free, found.theta, on, found.levels)  # known from the pass
-    assert problem.filtered.work == before
+    assert problem.work_count.work == before
     problem.whitened_errors(found.free, found.theta, on, found.levels, passes)
     work = 0
     for mapped in problem.recordings:
         intervals = np.diff(mapped.times)
-        steps = sum(max(1, math.ceil(h / mapped.step - 1e-9)) for h in intervals)
+        steps = sum(max(1, math.ceil(h / mapped.largest_step - 1e-9)) for h in intervals)
         work += CALL + steps * len(problem.program.vessel.dof)
-    assert problem.filtered.work == before + work
+    assert problem.work_count.work == before + work
 
 
-def test_all_recordings_of_a_diagnosis_share_one_count(loaded: Loaded) -> None:
+def test_all_recordings_of_a_diagnosis_share_one_count(loaded: LoadedRecordings) -> None:
     question = question_with(loaded, FAST)
     counts = [mapped.filtered for mapped in (*question.problem.recordings, *question.held_out)]
-    assert all(count is question.problem.filtered for count in counts)
+    assert all(count is question.problem.work_count for count in counts)
 
 
-def test_the_default_budget_skips_nothing(loaded: Loaded) -> None:
+def test_the_default_budget_skips_nothing(loaded: LoadedRecordings) -> None:
     ranking = selection_with(loaded, FAST).ranking
     assert not ranking.skipped
     assert [one.name for one in ranking.named] == ["weak_reverse"]
 
 
-def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded: Loaded) -> None:
+def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(
+    loaded: LoadedRecordings,
+) -> None:
     ranking = selection_with(loaded, with_budget(1)).ranking
     assert not ranking.named and not ranking.best.effects
     assert len(ranking.first) == len(CANDIDATES)  # each candidate alone is always screened
@@ -95,12 +99,14 @@ def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(loaded:
     assert TIME_NOT_CHOSEN in ranking.skipped
 
 
-def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: Loaded) -> None:
+def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(
+    loaded: LoadedRecordings,
+) -> None:
     question = question_with(loaded, FAST)
-    base = pipeline.fit(question)
-    before = question.problem.filtered.work
-    complete = pipeline.select(question, base, loaded).ranking
-    used = question.problem.filtered.work - before
+    base = pipeline.fit_baseline_models(question)
+    before = question.problem.work_count.work
+    complete = pipeline.select_candidates(question, base, loaded).ranking
+    used = question.problem.work_count.work - before
     evidence = []
     for share in (0.0, 0.3, 0.6, 1.0):
         ranking = selection_with(loaded, with_budget(1 + int(share * used))).ranking
@@ -110,11 +116,11 @@ def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(loaded: 
 
 
 def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_come(
-    loaded: Loaded, monkeypatch: pytest.MonkeyPatch
+    loaded: LoadedRecordings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     question = question_with(loaded, FAST)
-    base = pipeline.fit(question)
-    found = pipeline.select(question, base, loaded).ranking
+    base = pipeline.fit_baseline_models(question)
+    found = pipeline.select_candidates(question, base, loaded).ranking
     asked = list[Fit]()
 
     def remember(sets: CandidateSets, best: Fit, held_out: Recordings) -> Fit:
@@ -122,13 +128,15 @@ def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_co
         return best
 
     monkeypatch.setattr(ranking_stage, "remove_dwarfed_effect", remember)
-    problem, none = question.problem, SearchBudget(question.problem.filtered, 0)
-    again = rank(problem, CANDIDATES, question.held_out, found.best, base=base, budget=none)
+    problem, none = question.problem, SearchBudget(question.problem.work_count, 0)
+    again = select_and_rank_candidates(
+        problem, CANDIDATES, question.held_out, found.best, base=base, budget=none
+    )
     assert again.best.effects == found.best.effects == ("weak_reverse",)
     assert not asked and ranking_stage.NOT_EXAMINED in again.skipped
 
 
-def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
+def test_the_same_budget_gives_the_same_answer_again(loaded: LoadedRecordings) -> None:
     first, second = (selection_with(loaded, with_budget(200_000)).ranking for _ in range(2))
     assert first.skipped == second.skipped
     assert first.best.effects == second.best.effects
@@ -136,7 +144,7 @@ def test_the_same_budget_gives_the_same_answer_again(loaded: Loaded) -> None:
 
 
 @pytest.mark.slow
-def test_the_answer_says_in_words_what_was_skipped(loaded: Loaded) -> None:
+def test_the_answer_says_in_words_what_was_skipped(loaded: LoadedRecordings) -> None:
     found = pipeline.diagnose_loaded(loaded, config=with_budget(1))
     answer = found.findings.answer
     assert answer["skipped"]
@@ -156,7 +164,7 @@ def test_the_answer_says_that_candidates_were_not_compared_only_where_that_is_so
 
 
 def test_a_diagnosis_without_work_for_a_second_search_has_compared_all_candidates(
-    loaded: Loaded,
+    loaded: LoadedRecordings,
 ) -> None:
     select = replace(FAST.select, again_share=1e9)
     found = pipeline.diagnose_loaded(loaded, config=replace(FAST, select=select))
@@ -167,11 +175,11 @@ def test_a_diagnosis_without_work_for_a_second_search_has_compared_all_candidate
 
 def test_statements_count_the_candidates_once_for_each_trial() -> None:
     budget = SearchBudget(WorkCount(), 0)
-    budget.record_skipped_candidates(3, f"tested {addition_phrase(['wind'])}")
-    budget.record_skipped_candidates(2, f"tested {addition_phrase(['wind'])}")
+    budget.record_skipped_candidates(3, f"tested {in_addition_to_phrase(['wind'])}")
+    budget.record_skipped_candidates(2, f"tested {in_addition_to_phrase(['wind'])}")
     budget.record_skipped_candidates(0, "refitted in place of wind")
     budget.record_skipped_candidates(1, "refitted in place of current")
-    assert budget.skipped == (
+    assert budget.skipped_work_statements == (
         "2 candidates were not tested in addition to wind",
         "1 candidate was not refitted in place of current",
     )

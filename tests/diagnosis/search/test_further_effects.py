@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, laid, sail
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.further_effects import add_further_effects
 from boatsim.diagnosis.search.pruning import differs_from_zero
 from boatsim.physics.base import Array
 
-CANDIDATES = library_for(BOAT).tested
+CANDIDATES = candidate_library(BOAT).tested_names
 Laid = tuple[Problem, Fit]
 
 
@@ -72,7 +72,7 @@ def test_a_spent_budget_ends_the_search(windy: Laid) -> None:
     sets.problem.filter(
         base.free, 1.01 * base.theta, problem.program.effect_switches(), base.levels
     )
-    assert sets.budget.spent and add_further_effects(sets, base) is None
+    assert sets.budget.is_spent and add_further_effects(sets, base) is None
 
 
 @pytest.mark.parametrize(("correlation", "expected"), [(0.0, False), (0.999, True)])
@@ -81,7 +81,7 @@ def test_a_combination_that_the_recordings_determine_differs_from_zero(
 ) -> None:
     """Each of two scales is within one standard deviation of zero; their difference may not be."""
     problem, base = calm
-    free = problem.parameters(("camera_scale",))
+    free = problem.free_parameters(("camera_scale",))
     own = [i for i, f in enumerate(free) if f.effect == "camera_scale"]
     theta = np.array([f.mean for f in free])
     theta[own] = 0.02, -0.02

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, Missing, push, sail
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import Fit, Problem
@@ -22,7 +22,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
-PROGRAM = Program(BOAT, library_for(BOAT).compiled)
+PROGRAM = Program(BOAT, candidate_library(BOAT).compiled_effects)
 EFFECT = "steady_force"
 ASIDE = 0.15  # [N]
 HORIZON = 6.0  # [s]
@@ -77,7 +77,7 @@ def held_out(blue_boat: Missing, red: Missing) -> list[MappedRecording]:
 def without_harm(common: tuple[Problem, Fit, Fit], red: Missing) -> tuple[Fit, Fit]:
     """The fit with a force on all boats, and what held-out recordings leave of it."""
     problem, base, found = common
-    candidates = (EFFECT, *problem.names_in_groups([EFFECT]))
+    candidates = (EFFECT, *problem.candidates_in_single_groups([EFFECT]))
     sets = CandidateSets(problem, candidates, base)
     sets.fits[frozenset(found.effects)] = found
     _, named = prune(sets, found)

@@ -9,7 +9,7 @@ from alike import slow
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.candidates import base_name, library_for
+from boatsim.diagnosis.candidates import candidate_library, name_without_prefixes
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
@@ -52,7 +52,11 @@ def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
 def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     """A noisy recording of 40 s of the boat with a fault."""
     program, rows = Program(boat, candidates=(fault,)), 400
-    code, given, rng = program.simulation, sent(rows, seed), np.random.default_rng(100 + seed)
+    code, given, rng = (
+        program.simulation_functions,
+        sent(rows, seed),
+        np.random.default_rng(100 + seed),
+    )
     commands = np.column_stack([given[c] for c in boat.commands])
     values, on, memory = (
         program.values(),
@@ -60,7 +64,7 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
         np.zeros(program.memory_size),
     )
     path = np.zeros((rows + 1, 2 * code.NQ))
-    code.settle_actuators(commands[0], memory, values, on, np.zeros(program.held_size))
+    code.settle_actuators(commands[0], memory, values, on, np.zeros(program.actuator_signal_size))
     code.rollout(
         VesselNumbers(np.array(program.body), values, on),
         program.vessel_state(np.zeros(2 * code.NQ), memory),
@@ -88,16 +92,18 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
     for name in ("thrust_deadband", "behind"):
         memory, act, on = (
             np.zeros(program.memory_size),
-            np.zeros(program.held_size),
+            np.zeros(program.actuator_signal_size),
             program.effect_switches([name]),
         )
-        program.simulation.settle_actuators(
+        program.simulation_functions.settle_actuators(
             np.zeros(len(boat.commands)), memory, program.values(), on, act
         )
         command = np.array([0.3 if c in DRIVES else 0.0 for c in boat.commands])
         shown = []
         for _ in range(6):
-            program.simulation.advance_actuators(command, memory, STEP, program.values(), on, act)
+            program.simulation_functions.advance_actuators(
+                command, memory, STEP, program.values(), on, act
+            )
             shown.append(act.reshape(3, -1)[2, program.composition.law_signals.index(DRIVES[0])])
         ends[name] = np.array(shown)
     built_up = 1.0 - np.exp(-STEP * np.arange(1, 7) / LAG)
@@ -108,11 +114,13 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
 def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
     tmp_path: Path,
 ) -> None:
-    twice = [n for n in library_for(lagging(tmp_path)).tested if n.startswith("reordered_")]
-    assert sorted(map(base_name, twice)) == ["thrust_deadband", "weak_reverse"]
+    twice = [
+        n for n in candidate_library(lagging(tmp_path)).tested_names if n.startswith("reordered_")
+    ]
+    assert sorted(map(name_without_prefixes, twice)) == ["thrust_deadband", "weak_reverse"]
     assert not [
         n
-        for n in library_for(vessel.load_vessel("trial_boat")).tested
+        for n in candidate_library(vessel.load_vessel("trial_boat")).tested_names
         if n.startswith("reordered_")
     ]
 

@@ -9,7 +9,7 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, FreeParameter
 from boatsim.diagnosis.search.evidence import quadratic_evidence_gain, unknown_cause_threshold
-from boatsim.diagnosis.search.pruning import IdentifiedEffect, may_correct_shape
+from boatsim.diagnosis.search.pruning import IdentifiedEffect, may_only_correct_other_effect
 
 DISTANCE = 3.0  # of each parameter from zero effect [sd]
 
@@ -34,7 +34,7 @@ def test_independent_effects_explain_together_the_sum_of_what_each_explains() ->
     found = fit_with_correlation(0.0)
     assert quadratic_evidence_gain(found, "square") == 0.5 * DISTANCE**2
     assert quadratic_evidence_gain(found, "square", "cube") == DISTANCE**2
-    assert not may_correct_shape(found, gaining(1.0), "square", DEFAULT.select)
+    assert not may_only_correct_other_effect(found, gaining(1.0), "square", DEFAULT.select)
 
 
 @pytest.mark.parametrize(("correlation", "may"), [(-0.9, True), (-0.2, True), (0.5, False)])
@@ -45,6 +45,6 @@ def test_an_effect_may_correct_the_shape_of_another_where_only_their_sum_is_dete
     found = fit_with_correlation(correlation)
     both = DISTANCE**2 / (1.0 + correlation)
     assert quadratic_evidence_gain(found, "square", "cube") == pytest.approx(both)
-    assert may_correct_shape(found, gaining(1.0), "square", DEFAULT.select) is may
+    assert may_only_correct_other_effect(found, gaining(1.0), "square", DEFAULT.select) is may
     much = 2.0 * unknown_cause_threshold(DEFAULT.select, both)
-    assert not may_correct_shape(found, gaining(much), "square", DEFAULT.select)
+    assert not may_only_correct_other_effect(found, gaining(much), "square", DEFAULT.select)

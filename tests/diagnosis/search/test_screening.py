@@ -97,7 +97,7 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
     """A craft that never comes near the speed from which it planes: how far it is held back is
     seen, the speed not."""
     problem, base = weak
-    free = problem.parameters(("planing_lag",))
+    free = problem.free_parameters(("planing_lag",))
     at = {f.name: i for i, f in enumerate(free) if f.effect == "planing_lag"}
     theta, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
     theta[at["full_speed"]], theta[at["least"]], sd[at["least"]] = (

@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 
-from boatsim.diagnosis.candidates import diagnosis_program, library_for
+from boatsim.diagnosis.candidates import candidate_library, diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.symbolic import grammar
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel
-from boatsim.physics.base import Array, Motion, Wrench, motion
+from boatsim.physics.base import Array, Motion, Wrench, make_motion
 from boatsim.physics.described_laws import EVER
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
@@ -30,7 +30,7 @@ from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording
 
 ACTS = np.array([0.8, -0.4, 0.3, 0.1, cos(0.3), sin(0.3), cos(0.1), sin(0.1)])  # of the trial boat
-AT = motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
+AT = make_motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
 CLOSED: Mapping[str, tuple[dict[str, Any], Callable[[Motion], float]]] = {
     "constant": ({"of": []}, lambda m: 1.0),
     "product": ({"of": ["surge_speed", "yaw_rate"]}, lambda m: m.ur * m.r),
@@ -128,13 +128,13 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
         "of": ["surge_speed", "abs_yaw_rate"],
         "acts": "always",
     }
-    assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
+    assert own.wrench(make_motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
 
 
 def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
-    library = library_for(BOAT)
-    assert not [n for n in library.tested if n.startswith("described")]
-    assert {e.name for e in library.compiled} - {e.name for e in library.entries} == {
+    library = candidate_library(BOAT)
+    assert not [n for n in library.tested_names if n.startswith("described")]
+    assert {e.name for e in library.compiled_effects} - {e.name for e in library.entries} == {
         e.name for e in library.placeholders
     }
     assert not any(
@@ -148,7 +148,7 @@ def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
 
 def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> None:
     """Tracks far from each other: such a pattern would be a constant of each recording."""
-    program = Program(BOAT, library_for(BOAT).compiled)
+    program = Program(BOAT, candidate_library(BOAT).compiled_effects)
     t, recordings = np.arange(30.0), []
     for name, start, extent in (("near", 0.0, 60.0), ("far", 9000.0, 90.0)):
         signals = {"x_m": start + extent * t / 29.0, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
@@ -156,7 +156,7 @@ def test_no_pattern_fixed_to_the_earth_is_longer_than_the_longest_track() -> Non
         recording = Recording(name, t, signals | commands, Notes(vessel="trial_boat"))
         recordings.append(map_recording(recording, program))
     wavelengths = []
-    for term in grammar.terms(BOAT, recordings, {}, (), DEFAULT.describe):
+    for term in grammar.candidate_terms(BOAT, recordings, {}, (), DEFAULT.describe):
         if term.of == ("ripple_north",):
             wavelengths.append(term.wavelength)
         assert term.of != ("ripple_east",)
@@ -182,7 +182,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
     """Of recordings under these causes, the last one held out."""
     runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
-    return diagnose_loaded(Loaded(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
+    return diagnose_loaded(LoadedRecordings(runs[:-1], runs[-1:], {None: BOAT}, "the last"))
 
 
 def halved(found: Diagnosis, signal: str) -> bool:

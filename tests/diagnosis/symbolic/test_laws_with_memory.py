@@ -19,8 +19,8 @@ from boatsim.diagnosis.report.described_terms import (
     coefficient_unit,
     factors_in_words,
 )
-from boatsim.diagnosis.symbolic.grammar import neighbours
-from boatsim.diagnosis.symbolic.slots import set_placeholder_term
+from boatsim.diagnosis.symbolic.grammar import term_variants
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -83,14 +83,14 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
     on, p, own = (
         program.effect_switches(),
         program.values(),
-        program.composition.history_place(len(BOAT.effects)),
+        program.composition.history_index(len(BOAT.effects)),
     )
-    memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+    memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
     commands, steps = commanded(9), [0.02, 0.5, 3.0, 0.02, 0.17, 1.0, 0.3, 0.04, 0.6]
-    program.functions.settle_actuators(commands[0], memory, p, on, act)
+    program.estimation_functions.settle_actuators(commands[0], memory, p, on, act)
     y = of(commands[0])
     for command, dt in zip(commands, steps, strict=True):
-        program.functions.advance_actuators(command, memory, dt, p, on, act)
+        program.estimation_functions.advance_actuators(command, memory, dt, p, on, act)
         begin, middle, end = act.reshape(3, -1)[:, own]
         x = of(command)
         path = solve_ivp(
@@ -127,7 +127,7 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
         replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS))
     )
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
-    program.functions.simulate_intervals(
+    program.estimation_functions.simulate_intervals(
         Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
         VesselNumbers(program.body, program.values(), program.effect_switches(on)),
@@ -230,10 +230,10 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
     acting = actuator_states(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(
-        way.size(term), acting[:, program.composition.history_place(number)], atol=1e-9
+        way.term_value(term), acting[:, program.composition.history_index(number)], atol=1e-9
     )
     assert {
-        t.memory for t in neighbours(term, problem.recordings, 0.5, problem.config.describe)
+        t.memory for t in term_variants(term, problem.recordings, 0.5, problem.config.describe)
     } == {1.7 * 1.5, 1.7 / 1.5}
 
 

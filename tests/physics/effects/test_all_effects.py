@@ -29,7 +29,7 @@ from boatsim.physics.base import (
     SignalSegment,
     WaterFlow,
     Wrench,
-    motion,
+    make_motion,
     segment_mean,
 )
 from boatsim.physics.compose import effect_kinds
@@ -268,8 +268,8 @@ def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(
     name: str, seed: int
 ) -> None:
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
-    seen = effect.wrench(motion(current=(0.2, 0.1), **given), *arguments(SHELF[name], seed))
-    turned = motion(current=(0.2, -0.1), **mirrored_motion(given))
+    seen = effect.wrench(make_motion(current=(0.2, 0.1), **given), *arguments(SHELF[name], seed))
+    turned = make_motion(current=(0.2, -0.1), **mirrored_motion(given))
     image = mirrored(effect).wrench(turned, *arguments(SHELF[name], seed, image=True))
     assert any(abs(part) > 1e-6 for part in seen) or name in RESTS
     assert image == pytest.approx(MIRROR * seen, rel=1e-12, abs=1e-12)
@@ -282,10 +282,10 @@ def test_mirror_image_of_motion_and_forces_gives_the_mirror_image_of_the_reactio
 ) -> None:
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
     others = np.random.default_rng(seed).uniform(-1.0, 1.0, 6)
-    seen = type(effect).reaction(motion(**given), Wrench(*others), effect.values())
+    seen = type(effect).reaction(make_motion(**given), Wrench(*others), effect.values())
     turned = Wrench(*(MIRROR * others))
     image = type(effect).reaction(
-        motion(**mirrored_motion(given)), turned, mirrored(effect).values()
+        make_motion(**mirrored_motion(given)), turned, mirrored(effect).values()
     )
     assert any(seen)
     assert image == pytest.approx(MIRROR * seen, rel=1e-12, abs=1e-12)
@@ -321,7 +321,10 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(
     )
     if "course_kept" in kind.params():  # then the waves are met as on a course laid down beforehand
         effect = replace(effect, course_kept=0.0)
-    still, carried = motion(**given), motion(current=(0.7, -0.4), **in_a_current(given, 0.7, -0.4))
+    still, carried = (
+        make_motion(**given),
+        make_motion(current=(0.7, -0.4), **in_a_current(given, 0.7, -0.4)),
+    )
 
     def force(m: Motion) -> Array:
         if issubclass(kind, Reaction):
@@ -377,10 +380,10 @@ def test_inertia_is_symmetric_and_takes_no_energy(name: str) -> None:
 @pytest.mark.parametrize("name", INERTIAS)
 @pytest.mark.parametrize("seed", range(3))
 def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None:
-    m = motion(current=(0.0, 0.0), **drawn_motion(seed))
+    m = make_motion(current=(0.0, 0.0), **drawn_motion(seed))
     effect = drawn(SHELF[name], seed)
     force = np.array(effect.wrench(m)) - np.array(
-        effect.wrench(motion())
+        effect.wrench(make_motion())
     )  # less the weight of what has one
     assert hypot(force[0], force[1]) > 1e-6
     power = np.dot(force, (m.ur, m.vr, m.wr, m.p, m.q, m.r))
@@ -400,7 +403,7 @@ def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, se
             if effect.changes(b)
         )
         assert boat.with_completed_effect(effect) == boat
-    moving = motion(current=(0.0, 0.0), **drawn_motion(seed))
+    moving = make_motion(current=(0.0, 0.0), **drawn_motion(seed))
     if isinstance(effect, Force):
         assert effect.wrench(moving, *arguments(kind, seed)) == pytest.approx(Wrench(), abs=1e-15)
     if isinstance(effect, Reaction):
@@ -489,7 +492,7 @@ def test_a_setting_out_of_bounds_or_misspelt_is_refused_in_words(name: str) -> N
 def test_linear_damping_is_a_matrix_times_the_velocity() -> None:
     force = LinearDamping(
         surge=3, sway=10, yaw=0.8, roll=2, sway_by_yaw=0.5, yaw_by_sway=-0.3
-    ).wrench(motion(u=0.2, v=0.1, p=0.3, r=-0.4))
+    ).wrench(make_motion(u=0.2, v=0.1, p=0.3, r=-0.4))
     assert force == pytest.approx(Wrench(X=-0.6, Y=-1.0 + 0.2, K=-0.6, N=0.32 + 0.03))
 
 
@@ -498,21 +501,21 @@ def test_damping_grows_with_a_power_of_the_speed_and_opposes_it(
     kind: type[Force], power: int
 ) -> None:
     effect = kind(surge=2, sway=3, yaw=5, roll=7)  # type: ignore[call-arg]
-    one = effect.wrench(motion(u=0.3, v=-0.3, p=0.3, r=-0.3))
+    one = effect.wrench(make_motion(u=0.3, v=-0.3, p=0.3, r=-0.3))
     assert one == pytest.approx([k * 0.3**power for k in (-2, 3, 0, -7, 0, 5)])
-    double = effect.wrench(motion(u=0.6, v=-0.6, p=0.6, r=-0.6))
+    double = effect.wrench(make_motion(u=0.6, v=-0.6, p=0.6, r=-0.6))
     assert double == pytest.approx([2**power * part for part in one])
 
 
 def test_surge_drag() -> None:
-    assert SurgeDrag(linear=0.5, quadratic=2).wrench(motion(u=-0.4, v=1.0)) == pytest.approx(
+    assert SurgeDrag(linear=0.5, quadratic=2).wrench(make_motion(u=-0.4, v=1.0)) == pytest.approx(
         Wrench(X=0.2 + 0.32)
     )
 
 
 def test_damping_error_multiplies_the_vessels_own_damping() -> None:
     boat = vessel.load_vessel("trial_boat")
-    own, m = boat.effect("linear_damping"), motion(u=0.3, v=-0.2, r=0.5)
+    own, m = boat.effect("linear_damping"), make_motion(u=0.3, v=-0.2, r=0.5)
     assert isinstance(own, LinearDamping)
     off = boat.with_completed_effect(
         DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)
@@ -525,15 +528,15 @@ def test_damping_error_multiplies_the_vessels_own_damping() -> None:
 
 def test_righting_arm_rests_at_its_list() -> None:
     arm = RightingArm(stiffness=800.0, list=0.02)
-    assert arm.wrench(motion(phi=0.02)) == Wrench()
-    assert arm.wrench(motion(phi=0.12)).K == pytest.approx(-80.0)
+    assert arm.wrench(make_motion(phi=0.02)) == Wrench()
+    assert arm.wrench(make_motion(phi=0.12)).K == pytest.approx(-80.0)
 
 
 def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
     boat = vessel.load_vessel("kvlcc2_roll")
     bent = boat.with_completed_effect(RightingArmStiffening(cubic=-2.0)).effect("righting_arm")
     assert isinstance(bent, RightingArm)
-    assert bent.wrench(motion(phi=0.3)).K == pytest.approx(-822.3 * (0.3 - 2.0 * 0.3**3))
+    assert bent.wrench(make_motion(phi=0.3)).K == pytest.approx(-822.3 * (0.3 - 2.0 * 0.3**3))
 
 
 @pytest.mark.parametrize(
@@ -568,7 +571,7 @@ def test_added_mass_far_ahead_is_a_point_mass_on_a_lever() -> None:
 def test_coriolis_force_is_the_published_matrix() -> None:
     effect, m = (
         AddedMass(surge=0.6, sway=3.0, yaw=0.3, sway_at=0.2),
-        motion(current=(0.1, -0.05), psi=0.4, u=1, v=0.3, r=0.2),
+        make_motion(current=(0.1, -0.05), psi=0.4, u=1, v=0.3, r=0.2),
     )
     nr = np.array([m.ur, m.vr, m.r])
     a = effect.matrix()[np.ix_(PLANAR, PLANAR)] @ nr
@@ -580,7 +583,7 @@ def test_coriolis_force_is_the_published_matrix() -> None:
 
 def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
     assert Current.water_velocity(Current(north=0.3, east=-0.1).values()) == (0.3, -0.1)
-    drifting = motion(
+    drifting = make_motion(
         current=(0.3, -0.1),
         psi=0.7,
         u=0.3 * cos(0.7) - 0.1 * sin(0.7),
@@ -591,7 +594,7 @@ def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
 
 @pytest.mark.parametrize("factor", [1.0, 1.5, 3.0])
 def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
-    boat, m = vessel.load_vessel("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
+    boat, m = vessel.load_vessel("joystick_boat"), make_motion(u=0.3, v=-0.2, r=0.5)
     mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
     shallow = boat.with_completed_effect(ShallowWater(factor=factor))
@@ -614,7 +617,7 @@ def test_linear_sections_and_surge_drag_go_with_cross_flow() -> None:
     x = np.linspace(-0.7, 1.3, 20001)
     sections = -4.0 * (0.2 + 0.5 * x)
     expected = Wrench(X=-5.0 * 0.09, Y=np.trapezoid(sections, x), N=np.trapezoid(sections * x, x))
-    assert drag.wrench(motion(u=0.3, v=0.2, r=0.5)) == pytest.approx(expected, rel=1e-7)
+    assert drag.wrench(make_motion(u=0.3, v=0.2, r=0.5)) == pytest.approx(expected, rel=1e-7)
 
 
 # Air
@@ -622,22 +625,22 @@ def test_linear_sections_and_surge_drag_go_with_cross_flow() -> None:
 
 @pytest.mark.parametrize("psi", [0.0, 0.3, 2.5, -1.2])
 def test_a_boat_drifting_with_the_air_feels_no_wind(psi: float) -> None:
-    drifting = motion(psi=psi, u=2.0 * cos(0.3 - psi), v=2.0 * sin(0.3 - psi))
+    drifting = make_motion(psi=psi, u=2.0 * cos(0.3 - psi), v=2.0 * sin(0.3 - psi))
     assert FanWind(speed=2.0, toward=0.3).wrench(drifting) == pytest.approx(Wrench(), abs=1e-12)
 
 
 def test_fan_wind_ahead_and_abeam() -> None:
     astern = FanWind(speed=3.0, toward=0.0, front=0.02, side=0.1, arm=-0.05)
-    assert astern.wrench(motion()) == pytest.approx(Wrench(X=0.5 * AIR_DENSITY * 9 * 0.02))
+    assert astern.wrench(make_motion()) == pytest.approx(Wrench(X=0.5 * AIR_DENSITY * 9 * 0.02))
     Y = 0.5 * AIR_DENSITY * 9 * 0.1
-    assert replace(astern, toward=pi / 2).wrench(motion()) == pytest.approx(
+    assert replace(astern, toward=pi / 2).wrench(make_motion()) == pytest.approx(
         Wrench(Y=Y, N=-0.05 * Y)
     )
 
 
 @pytest.mark.parametrize("psi", [0.0, 0.8, -2.0])
 def test_wind_pushes_in_one_direction_of_the_world(psi: float) -> None:
-    force = Wind(force=0.2, toward=0.5, arm=0.1, end_on=1.0).wrench(motion(psi=psi))
+    force = Wind(force=0.2, toward=0.5, arm=0.1, end_on=1.0).wrench(make_motion(psi=psi))
     north, east = force.X * cos(psi) - force.Y * sin(psi), force.X * sin(psi) + force.Y * cos(psi)
     assert (north, east) == pytest.approx((0.2 * cos(0.5), 0.2 * sin(0.5)))
     assert force.N == pytest.approx(0.1 * force.Y)
@@ -659,7 +662,7 @@ def signals(kind: type[Effect], **given: float) -> Any:
 def test_a_thruster_is_a_force_at_its_place(angle: float) -> None:
     force = 1.2 * -0.5 * np.array([cos(angle), sin(angle), 0.0])
     seen = Thruster(x=-0.5, y=0.2, z=0.1, gain=1.2).wrench(
-        motion(), signals(Thruster, thrust=-0.5, angle=angle)
+        make_motion(), signals(Thruster, thrust=-0.5, angle=angle)
     )
     assert seen == pytest.approx([*force, *np.cross([-0.5, 0.2, 0.1], force)], abs=1e-15)
 
@@ -760,10 +763,10 @@ def test_what_has_reached_its_command_asks_for_no_shorter_step(limit: Any) -> No
 def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float]:
     """What the boat's actuators settle at."""
     program = Program(boat)
-    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
     values, on = program.values(), program.effect_switches()
     for _ in range(3):
-        program.simulation.advance_actuators(
+        program.simulation_functions.advance_actuators(
             program.command_array(commands), memory, 1e4, values, on, act
         )
     return dict(zip(boat.actuators, act.tolist(), strict=False))

@@ -4,14 +4,14 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from boatsim.physics.base import Wrench, motion
+from boatsim.physics.base import Wrench, make_motion
 from boatsim.physics.effects.foil import Foil
 
 HOUSING = Foil(area=9.0, drag=0.3, drag_slope=0.3, lift=0.5, density=1000.0, x=-16.0, y=3.0, z=2.0)
 
 
 def force(angle: float = 0.0, foil: Foil = HOUSING, **at: float) -> Wrench:
-    return foil.wrench(motion(**at), angle=angle)
+    return foil.wrench(make_motion(**at), angle=angle)
 
 
 def test_straight_ahead_it_is_a_drag_at_its_place() -> None:

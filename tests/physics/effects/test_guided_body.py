@@ -8,9 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
-from boatsim.physics.base import motion
+from boatsim.physics.base import make_motion
 from boatsim.physics.effects.applied_load import AppliedLoad, LoadGainError
 from boatsim.physics.effects.dry_friction import DryFriction
 from boatsim.physics.effects.righting_moment import RightingMoment
@@ -35,7 +35,7 @@ def test_a_measured_force_acts_at_its_point_and_a_measured_moment_about_its_axis
     load = AppliedLoad(
         surge=0.6, heave=-0.8, roll=1.0, yaw=-0.5, x=0.3, y=-0.2, z=0.1, gain=1.2, force_offset=0.5
     )
-    seen = load.wrench(motion(), AppliedLoad.signals(force=2.0, moment=3.0))
+    seen = load.wrench(make_motion(), AppliedLoad.signals(force=2.0, moment=3.0))
     force = 1.2 * 2.5 * np.array([0.6, 0.0, -0.8])
     turning = 1.2 * 3.0 * np.array([1.0, 0.0, -0.5]) + np.cross([0.3, -0.2, 0.1], force)
     assert seen == pytest.approx([*force, *turning], abs=1e-15)
@@ -44,7 +44,7 @@ def test_a_measured_force_acts_at_its_point_and_a_measured_moment_about_its_axis
 @pytest.mark.parametrize("amplitude", [0.1, 1.5, 3.0])
 def test_the_period_of_a_pendulum_follows_the_elliptic_integral(amplitude: float) -> None:
     weight = RightingMoment(moment=3.0)
-    run = simulated(lambda phi, p: weight.wrench(motion(phi=phi, p=p)).K, amplitude, 0.0, 8.0)
+    run = simulated(lambda phi, p: weight.wrench(make_motion(phi=phi, p=p)).K, amplitude, 0.0, 8.0)
     t = np.linspace(0.0, 8.0, 80_001)
     p = run.sol(t)[1]
     half = t[1:][(p[:-1] < 0.0) & (p[1:] >= 0.0)][0]  # it turns back on the other side
@@ -55,16 +55,18 @@ def test_the_period_of_a_pendulum_follows_the_elliptic_integral(amplitude: float
 def test_the_restoring_moment_is_the_same_after_any_number_of_turns() -> None:
     arm = RightingMoment(moment=3.0, second=0.3, third=-0.1, list=0.2)
     for phi in (-2.0, 0.2, 1.0, 3.0):
-        turned = [arm.wrench(motion(phi=phi + 2.0 * pi * k)).K for k in (-3, 0, 5)]
+        turned = [arm.wrench(make_motion(phi=phi + 2.0 * pi * k)).K for k in (-3, 0, 5)]
         assert turned == pytest.approx([turned[0]] * 3, abs=1e-12)
-    assert arm.wrench(motion(phi=0.2)).K == 0.0
+    assert arm.wrench(make_motion(phi=0.2)).K == 0.0
 
 
 def test_dry_friction_takes_the_same_from_each_swing() -> None:
     """Each cycle of a linear oscillator with Coulomb friction loses 4 F / k (Den Hartog)."""
     stiffness, level = 3.0, 0.06
     friction = DryFriction(roll=level, creep_rate=1e-3, creep=1e-3)
-    run = simulated(lambda phi, p: -stiffness * phi + friction.wrench(motion(p=p)).K, 1.0, 0.0, 6.0)
+    run = simulated(
+        lambda phi, p: -stiffness * phi + friction.wrench(make_motion(p=p)).K, 1.0, 0.0, 6.0
+    )
     t = np.linspace(0.0, 6.0, 60_001)
     phi, p = run.sol(t)
     peaks = phi[1:][(p[:-1] > 0.0) & (p[1:] <= 0.0)]
@@ -74,9 +76,9 @@ def test_dry_friction_takes_the_same_from_each_swing() -> None:
 
 def test_dry_friction_holds_what_is_smaller_than_itself() -> None:
     friction = DryFriction(roll=0.2, creep_rate=0.01, creep=0.01)
-    held = simulated(lambda phi, p: 0.1 + friction.wrench(motion(p=p)).K, 0.0, 0.0, 10.0)
+    held = simulated(lambda phi, p: 0.1 + friction.wrench(make_motion(p=p)).K, 0.0, 0.0, 10.0)
     assert 0.0 < held.y[1][-1] < friction.creep_rate  # it creeps
-    loose = simulated(lambda phi, p: 0.3 + friction.wrench(motion(p=p)).K, 0.0, 0.0, 2.0)
+    loose = simulated(lambda phi, p: 0.3 + friction.wrench(make_motion(p=p)).K, 0.0, 0.0, 2.0)
     assert loose.y[1][-1] == pytest.approx(2.0 * 0.1 / INERTIA, rel=0.02)
 
 
@@ -86,10 +88,10 @@ def test_friction_at_rest_is_larger_by_the_static_ratio_and_falls_to_that_of_sli
 ) -> None:
     friction = DryFriction(surge=2.0, static_ratio=ratio, creep=0.01, creep_rate=0.01)
     speeds = np.geomspace(1e-4, 10.0, 4000)
-    forces = np.array([-friction.wrench(motion(u=u)).X for u in speeds])
+    forces = np.array([-friction.wrench(make_motion(u=u)).X for u in speeds])
     assert forces.max() == pytest.approx(2.0 * ratio, rel=0.1)
     assert forces[-1] == pytest.approx(2.0)
-    assert friction.wrench(motion(u=-0.3)).X == -friction.wrench(motion(u=0.3)).X
+    assert friction.wrench(make_motion(u=-0.3)).X == -friction.wrench(make_motion(u=0.3)).X
 
 
 def test_a_weight_on_an_arm_is_a_point_mass() -> None:
@@ -106,9 +108,9 @@ def test_a_weight_on_an_arm_is_a_point_mass() -> None:
 
 
 def test_errors_of_a_load_are_candidates_only_where_a_load_was_measured() -> None:
-    tested = library_for(vessel.load_vessel("pendulum")).tested
+    tested = candidate_library(vessel.load_vessel("pendulum")).tested_names
     assert {"load_gain_error", "moment_offset", "dry_friction"} <= set(tested)
-    boat = library_for(vessel.load_vessel("kvlcc2_roll"))
+    boat = candidate_library(vessel.load_vessel("kvlcc2_roll"))
     for name in ("load_gain_error", "dry_friction", "righting_moment_error"):
         assert name in boat.inapplicable, name
     assert "guided" in boat.inapplicable["dry_friction"]
@@ -118,4 +120,4 @@ def test_a_load_gain_error_scales_the_measured_moment() -> None:
     boat = vessel.load_vessel("pendulum").with_completed_effect(LoadGainError(factor=0.8))
     load = boat.effect("applied_load")
     assert isinstance(load, AppliedLoad)
-    assert load.wrench(motion(), AppliedLoad.signals(moment=2.0)).K == pytest.approx(1.6)
+    assert load.wrench(make_motion(), AppliedLoad.signals(moment=2.0)).K == pytest.approx(1.6)

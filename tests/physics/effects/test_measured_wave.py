@@ -9,9 +9,9 @@ from scipy.integrate import quad, solve_ivp
 
 from boatsim.diagnosis.filter import map_recording
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, make_motion
 from boatsim.physics.effects.ground_spring import GroundSpring
-from boatsim.physics.effects.wave_excitation import WaveExcitation, box_pressure
+from boatsim.physics.effects.wave_excitation import WaveExcitation, box_pressure_coefficients
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -98,8 +98,8 @@ def filtered(boat: Vessel, frequency: float) -> tuple[Array, Array]:
     They are the means over each step that Runge and Kutta use, at its middle.
     """
     program = Program(boat)
-    code, values, on = program.simulation, program.values(), program.effect_switches()
-    memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+    code, values, on = program.simulation_functions, program.values(), program.effect_switches()
+    memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
     code.settle_actuators(np.zeros(1), memory, values, on, act)
     first = list(program.composition.law_signals).index("filtered_elevation by wave_excitation")
     times, found = [], []
@@ -152,7 +152,7 @@ def test_a_wave_that_leads_by_the_delay_of_the_filter_has_a_phase_error_below_tw
 def test_undisturbed_pressure_on_a_box_equals_its_integral(tmp_path: Path) -> None:
     boat, w, rho = section(tmp_path), 5.0, 1000.0
     k, half, depth = w**2 / GRAVITY, 0.5 * boat.beam, boat.draught
-    found = box_pressure(boat, w, rho)
+    found = box_pressure_coefficients(boat, w, rho)
 
     def elevation(y: float, phase: float) -> float:  # from starboard: towards -y
         return float(np.cos(phase + k * y))
@@ -180,8 +180,8 @@ def test_undisturbed_pressure_on_a_box_equals_its_integral(tmp_path: Path) -> No
 
 def test_a_spring_below_the_origin_heels_the_hull_and_is_strained_by_heel() -> None:
     spring = GroundSpring(stiffness_east=100.0, below=0.1)
-    aside = spring.wrench(motion(y=0.2))
-    heeled = spring.wrench(motion(phi=0.003))
+    aside = spring.wrench(make_motion(y=0.2))
+    heeled = spring.wrench(make_motion(phi=0.003))
     assert aside.Y == pytest.approx(-20.0)
     assert aside.K == pytest.approx(2.0)
     assert heeled.Y == pytest.approx(100.0 * 0.1 * 0.003, rel=1e-4)
@@ -249,9 +249,9 @@ def test_a_box_on_a_rig_follows_a_measured_wave_as_another_integrator_computes(
     mapped = map_recording(recorded(t, poses), program)
     states = np.zeros((1, 6))
     out = np.full((1, len(t), 6), np.nan)
-    code = program.simulation
+    code = program.simulation_functions
     code.simulate_intervals(
-        mapped.inputs, 0.02, program.vessel_numbers(), np.array([0]), np.array([len(t) - 1]),
+        mapped.times_and_commands, 0.02, program.vessel_numbers(), np.array([0]), np.array([len(t) - 1]),
         states, out,
     )  # fmt: skip
     free = np.abs(by_hand(t)).max(axis=0)
@@ -269,11 +269,11 @@ def test_the_drift_force_grows_with_the_square_of_the_wave(tmp_path: Path) -> No
     boat = section(tmp_path)
     t = np.arange(0.0, 40.0, 1.0 / RATE)
     program = Program(boat)
-    code, values, on = program.simulation, program.values(), program.effect_switches()
+    code, values, on = program.simulation_functions, program.values(), program.effect_switches()
     first = list(program.composition.law_signals).index("mean_square by wave_drift")
     means = []
     for amplitude in (0.01, 0.02):
-        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
         code.settle_actuators(np.zeros(1), memory, values, on, act)
         squares = []
         for time in t:

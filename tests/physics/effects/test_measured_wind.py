@@ -12,13 +12,13 @@ import pytest
 from answers import diagnosed
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, manoeuvre_commands
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import open_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, make_motion
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
 from boatsim.physics.effects.measured_relative_wind import MeasuredRelativeWind
 from boatsim.physics.effects.measured_wind import MeasuredWind
@@ -74,7 +74,7 @@ def test_the_push_is_quadratic_in_the_air_past_the_hull_with_a_moment_of_two_har
         np.random.default_rng(seed).uniform([0, -3, -3, -1, -1], [9, 3, 3, 1, 1]).tolist()
     )
     force = MeasuredWind(**HULL).wrench(
-        motion(psi=psi, u=u, v=v), speed=speed, comes_from=comes_from
+        make_motion(psi=psi, u=u, v=v), speed=speed, comes_from=comes_from
     )
     assert np.array(force)[[0, 1, 5]] == pytest.approx(by_hand(speed, comes_from, psi, u, v))
 
@@ -84,14 +84,14 @@ def test_a_reading_on_board_has_the_boats_own_way_in_it() -> None:
     north, east = -4.0 * cos(2.0), -4.0 * sin(2.0)
     ahead, abeam = cos(psi) * north + sin(psi) * east - u, cos(psi) * east - sin(psi) * north - v
     read = {"speed": hypot(ahead, abeam), "comes_from": np.arctan2(-abeam, -ahead)}
-    on_board = MeasuredRelativeWind(**HULL).wrench(motion(psi=psi, u=u, v=v), **read)
-    true = MeasuredWind(**HULL).wrench(motion(psi=psi, u=u, v=v), speed=4.0, comes_from=2.0)
+    on_board = MeasuredRelativeWind(**HULL).wrench(make_motion(psi=psi, u=u, v=v), **read)
+    true = MeasuredWind(**HULL).wrench(make_motion(psi=psi, u=u, v=v), speed=4.0, comes_from=2.0)
     assert on_board == pytest.approx(true)
 
 
 @pytest.mark.parametrize("psi", [0.0, 1.0, 2.5, -2.0])
 def test_a_boat_at_rest_takes_it_as_a_fan_or_a_steady_wind(psi: float) -> None:
-    at, read = motion(psi=psi), {"speed": 4.0, "comes_from": 0.4 - pi}
+    at, read = make_motion(psi=psi), {"speed": 4.0, "comes_from": 0.4 - pi}
     fan = FanWind(speed=4.0, toward=0.4, front=0.3, side=0.8, arm=0.05).wrench(at)
     assert MeasuredWind(**(HULL | {"swing": 0.0})).wrench(at, **read) == pytest.approx(fan)
     force = 0.5 * AIR_DENSITY * 16.0 * HULL["side"]
@@ -100,7 +100,7 @@ def test_a_boat_at_rest_takes_it_as_a_fan_or_a_steady_wind(psi: float) -> None:
 
 
 def test_no_wind_on_a_boat_that_drifts_with_it() -> None:
-    drifting = motion(psi=0.0, u=-2.0 * cos(1.0), v=-2.0 * sin(1.0))
+    drifting = make_motion(psi=0.0, u=-2.0 * cos(1.0), v=-2.0 * sin(1.0))
     assert MeasuredWind(**HULL).wrench(drifting, speed=2.0, comes_from=1.0) == pytest.approx(
         [0.0] * 6, abs=1e-12
     )
@@ -123,7 +123,7 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
         *boat.actuators,
         *boat.angles,
     }
-    everything = (*boat.effects, *library_for(boat).compiled)
+    everything = (*boat.effects, *candidate_library(boat).compiled_effects)
     assert not measured & {n for e in everything for n in boat.target_actuators(e)}
     assert not measured & {
         *manoeuvre_commands(boat),
@@ -137,12 +137,14 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
 
 def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> None:
     program = Program(boat)
-    act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+    act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
     values, on = program.values(), program.effect_switches()
-    program.simulation.settle_actuators(program.command_array({}), memory, values, on, act)
+    program.simulation_functions.settle_actuators(
+        program.command_array({}), memory, values, on, act
+    )
     sent = program.command_array({"thrust_port_N": 50.0})
     sent[-2:] = 7.0, 2.0
-    program.simulation.advance_actuators(sent, memory, 0.02, values, on, act)
+    program.simulation_functions.advance_actuators(sent, memory, 0.02, values, on, act)
     held = dict(zip(boat.law_signals, act.reshape(3, -1).T.tolist(), strict=True))
     assert held["thrust_port_N"] == [0.0, 0.0, 0.0]
     assert held["wind_mps"] == [7.0] * 3 and held["wind_from_rad"] == [2.0] * 3

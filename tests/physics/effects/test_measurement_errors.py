@@ -14,7 +14,7 @@ from scipy import signal
 from scipy.interpolate import CubicSpline
 
 from boatsim.diagnosis import pipeline
-from boatsim.physics.base import MeasuredMotion, motion
+from boatsim.physics.base import MeasuredMotion, make_motion
 from boatsim.physics.effects.camera_scale import CameraScale
 from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
 from boatsim.physics.effects.late_fixes import LateFixes
@@ -73,7 +73,7 @@ def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_inde
 ):
     sea = WaveForcing(surge=0.2, sway=0.1, yaw=0.03, frequency=2.0, damping=0.05)
     t = np.arange(0.0, 4000.0, 0.2)
-    force = np.array([law(motion(t=float(x)), sea.values()) for x in t])[:, [0, 1, 5]]
+    force = np.array([law(make_motion(t=float(x)), sea.values()) for x in t])[:, [0, 1, 5]]
     assert force.std(axis=0) == pytest.approx([0.2, 0.1, 0.03], rel=0.05)
     for axis in force.T:
         power = np.abs(np.fft.rfft(axis)) ** 2
@@ -86,7 +86,7 @@ def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_inde
         assert (
             coherence[abs(2 * pi * frequency - 2.0) < 0.3].mean() < 0.1
         )  # of 77 half-overlapping parts: 0.02
-    assert not np.any(law(motion(t=3.0), sea.values()._replace(realisation=0.0)))
+    assert not np.any(law(make_motion(t=3.0), sea.values()._replace(realisation=0.0)))
 
 
 def diagnosed(folder: Path, real: Real) -> dict[str, Any]:

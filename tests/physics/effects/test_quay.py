@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.near_track import track_facts
-from boatsim.physics.base import motion
+from boatsim.diagnosis.near_track import small_track_fact
+from boatsim.physics.base import make_motion
 from boatsim.physics.effects.quay import Quay
 from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.table import Recording
@@ -28,7 +28,7 @@ WALL = Quay(
 
 def wrench_at(y: float, psi: float = 0.0, v: float = 0.0, wall: Quay = WALL) -> np.ndarray:
     """The wrench on a hull at rest or drifting sideways."""
-    return np.array(wall.wrench(motion(y=y, psi=psi, v=v, current=(0.0, 0.0))))
+    return np.array(wall.wrench(make_motion(y=y, psi=psi, v=v, current=(0.0, 0.0))))
 
 
 def test_a_hull_away_from_the_quay_feels_nothing() -> None:
@@ -70,6 +70,6 @@ def test_tracks_within_a_few_lengths_are_enclosed_and_longer_ones_are_not_near_a
     far = DEFAULT.load.near_track_lengths * boat.length
     path = np.linspace(0.0, 1.0, 30)
     near = [recording(path * 2.0, 5.0 - path), recording(path - 1.0, 4.0 + path)]
-    assert track_facts(near, boat) == {"track_m": [0.5, 4.5, 1.5, 0.5]}
-    assert track_facts([*near, recording(path * 1.1 * far, path)], boat) == {}
-    assert track_facts([Recording("run", near[0].t, {"psi_rad": path})], boat) == {}
+    assert small_track_fact(near, boat) == {"track_m": [0.5, 4.5, 1.5, 0.5]}
+    assert small_track_fact([*near, recording(path * 1.1 * far, path)], boat) == {}
+    assert small_track_fact([Recording("run", near[0].t, {"psi_rad": path})], boat) == {}

@@ -13,7 +13,7 @@ from scipy.special import exp1
 from boatsim.errors import BadInput
 from boatsim.metrics.sea_keeping import SeaKeeping
 from boatsim.physics import vessel
-from boatsim.physics.base import AXES, Array, Wrench, motion
+from boatsim.physics.base import AXES, Array, Wrench, make_motion
 from boatsim.physics.effects.bilge_keels import BilgeKeels
 from boatsim.physics.effects.filtered_sea import FilteredSea
 from boatsim.physics.effects.irregular_sea import IrregularSea, wave_slope_integrals
@@ -41,7 +41,7 @@ def sea(**more: float) -> IrregularSea:
 
 def ensemble(effect: Any, t: float = 0.0) -> Array:
     """(SEEDS, 6) wrenches at one time, over `AXES`."""
-    law, m = type(effect).law, motion(t=t)
+    law, m = type(effect).law, make_motion(t=t)
     return np.array([law(m, effect.with_seed(seed).values()) for seed in range(SEEDS)])
 
 
@@ -116,13 +116,15 @@ def test_a_ship_on_a_straight_course_meets_the_waves_of_the_formula(angle: float
     world = sea(toward=radians(angle))
     kept = replace(world, course_kept=1.0, speed=5.0)
     for t in (0.0, 3.7, 61.3):
-        seen = world.wrench(motion(t=t, x=5.0 * t, u=5.0))
-        assert seen == pytest.approx(kept.wrench(motion(t=t)), rel=1e-9)
+        seen = world.wrench(make_motion(t=t, x=5.0 * t, u=5.0))
+        assert seen == pytest.approx(kept.wrench(make_motion(t=t)), rel=1e-9)
     turned = replace(
         world, toward=radians(angle) + 0.3
     )  # only the angle between waves and ship counts
-    course = motion(t=9.0, psi=0.3, x=45.0 * cos(0.3), y=45.0 * sin(0.3))
-    assert turned.wrench(course) == pytest.approx(world.wrench(motion(t=9.0, x=45.0)), rel=1e-9)
+    course = make_motion(t=9.0, psi=0.3, x=45.0 * cos(0.3), y=45.0 * sin(0.3))
+    assert turned.wrench(course) == pytest.approx(
+        world.wrench(make_motion(t=9.0, x=45.0)), rel=1e-9
+    )
 
 
 def published(own: IrregularSea, w: float, angle: float, slope: float) -> tuple[float, float]:
@@ -144,7 +146,7 @@ def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_
     angle: float,
 ) -> None:
     one = replace(sea(toward=angle, components=1.0, course_kept=1.0), arm=0.0, speed=6.0)
-    Y, K, N = np.array([one.wrench(motion(t=t)) for t in np.arange(0.0, 400.0, 0.04)])[
+    Y, K, N = np.array([one.wrench(make_motion(t=t)) for t in np.arange(0.0, 400.0, 0.04)])[
         :, [SWAY, ROLL, YAW]
     ].T
     up = np.flatnonzero((K[:-1] < 0) & (K[1:] >= 0))
@@ -158,7 +160,7 @@ def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_
 
 
 def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() -> None:
-    m, waves = motion(t=3.0), sea(toward=1.0)
+    m, waves = make_motion(t=3.0), sea(toward=1.0)
     assert replace(waves, significant_height=0.0).wrench(m) == Wrench()
     assert waves.with_seed(0) == waves
     assert waves.with_seed(1).wrench(m) != pytest.approx(waves.wrench(m))
@@ -170,7 +172,7 @@ def test_sea_needs_no_particular_vessel() -> None:
     small = IrregularSea(
         significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0
     ).with_all_parameters(boat)
-    assert small.wrench(motion(t=1.0)).K == 0.0 and small.wrench(motion(t=1.0)).Y != 0.0
+    assert small.wrench(make_motion(t=1.0)).K == 0.0 and small.wrench(make_motion(t=1.0)).Y != 0.0
 
 
 NOISES = [
@@ -198,7 +200,7 @@ def test_noise_has_the_filters_autocorrelation_and_independent_axes(noise: Any) 
         assert (start * later).mean(axis=0)[acts] / level[acts] ** 2 == pytest.approx(
             wanted, abs=0.06
         )
-    assert type(noise)().wrench(motion(t=2.0)) == Wrench()
+    assert type(noise)().wrench(make_motion(t=2.0)) == Wrench()
 
 
 @pytest.mark.parametrize("noise", NOISES[1:], ids=lambda noise: noise.name)
@@ -208,13 +210,13 @@ def test_other_seeds_are_other_courses_of_the_noise_and_still_water_stays_still(
     def course(seed: int) -> Array:
         """Yaw moment in time."""
         law, values = type(noise).law, noise.with_seed(seed).values()
-        return np.array([law(motion(t=float(x)), values).N for x in t])
+        return np.array([law(make_motion(t=float(x)), values).N for x in t])
 
     first, second = course(1), course(2)
     assert (first == course(1)).all()
     assert abs(np.corrcoef(first, second)[0, 1]) < 0.1  # the error over 4000 s is 0.04
     assert noise.with_seed(10**12).realisation <= 1e9  # any seed will do
-    assert replace(noise, realisation=0.0).with_seed(3).wrench(motion(t=3.0)) == Wrench()
+    assert replace(noise, realisation=0.0).with_seed(3).wrench(make_motion(t=3.0)) == Wrench()
 
 
 # ---- roll damping
@@ -227,7 +229,7 @@ def test_bilge_keels_take_the_energy_of_the_published_equivalent_damping() -> No
 
         def power(t: float, a: float = a) -> float:
             p = a * 4.2 * cos(4.2 * t)
-            return -keels.wrench(motion(p=p)).K * p
+            return -keels.wrench(make_motion(p=p)).K * p
 
         drag = 22.5 * 0.05 / (pi * 0.3 * a * 1.2) + 2.4
         damping = 8 / (3 * pi) * RHO * 0.3**3 * 4.2 * a * 0.05 * 0.6 * 1.2**2 * drag
@@ -246,7 +248,7 @@ def test_roll_damping_is_a_share_of_the_critical_one() -> None:
     boat = vessel.load_vessel("martin_tank_model")
     critical = 2 * sqrt(118.56 * (5.556 + 1.1112))
     share = RollDamping(at_rest=0.03).with_all_parameters(boat)
-    assert share.wrench(motion(p=0.4)).K == pytest.approx(-0.03 * critical * 0.4)
+    assert share.wrench(make_motion(p=0.4)).K == pytest.approx(-0.03 * critical * 0.4)
 
 
 def test_the_tank_model_has_the_printed_period_and_the_computed_damping() -> None:
@@ -265,13 +267,13 @@ def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
     boat = vessel.load_vessel("eastward_ho", ["condition_3"])
     blade = Rudder(area=2.0, aspect=1.5, inflow=4.0, at=-10.0, below=2.0).with_all_parameters(boat)
     alone = 0.5 * RHO * 6.13 * 1.5 / 3.75 * 2.0 * 16.0
-    force, arm = blade.wrench(motion(), angle=0.1), boat.effect("linear_hull").arm  # type: ignore[union-attr]
+    force, arm = blade.wrench(make_motion(), angle=0.1), boat.effect("linear_hull").arm  # type: ignore[union-attr]
     assert -force.Y == pytest.approx(0.1 * alone * (1 + 0.627 * 0.514 - 0.153))
     assert force.N == pytest.approx(-10.0 * force.Y) and force.K == pytest.approx(
         (arm - 2.0) * force.Y
     )
     given = Rudder(sway=3.0, yaw=-4.0, roll=5.0).with_all_parameters(boat)
-    assert given.wrench(motion(), angle=0.5) == Wrench(Y=1.5, K=2.5, N=-2.0)
+    assert given.wrench(make_motion(), angle=0.5) == Wrench(Y=1.5, K=2.5, N=-2.0)
 
 
 @pytest.mark.parametrize(
@@ -296,20 +298,20 @@ def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float)
     )
     assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
     stalled = min(max(delta, -0.35), 0.35)
-    assert stalling.wrench(motion(), angle=delta) == pytest.approx(
-        own.wrench(motion(), angle=stalled)
+    assert stalling.wrench(make_motion(), angle=delta) == pytest.approx(
+        own.wrench(make_motion(), angle=stalled)
     )
 
 
 def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
     hold = SpeedHold(speed=6.0, gain=100.0, mass=500.0)
-    assert hold.wrench(motion(u=6.0, v=0.7, r=0.2)).X == pytest.approx(-500.0 * 0.7 * 0.2)
-    assert hold.wrench(motion(u=5.5)).X == pytest.approx(50.0)
+    assert hold.wrench(make_motion(u=6.0, v=0.7, r=0.2)).X == pytest.approx(-500.0 * 0.7 * 0.2)
+    assert hold.wrench(make_motion(u=5.5)).X == pytest.approx(50.0)
 
 
 def test_a_push_is_the_same_on_every_heading() -> None:
     push = Push(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, heel_arm=0.5)
-    assert push.wrench(motion(psi=2.0, u=3.0)) == Wrench(X=1.0, Y=2.0, K=4.0, N=4.0)
+    assert push.wrench(make_motion(psi=2.0, u=3.0)) == Wrench(X=1.0, Y=2.0, K=4.0, N=4.0)
 
 
 def test_sea_keeping_is_the_rms_of_three_angles_in_degrees() -> None:

@@ -17,7 +17,7 @@ from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.command_range import command_channels
 from boatsim.errors import BadInput
 from boatsim.physics import particulars, vessel
-from boatsim.physics.base import Array, Effect, SignalSegment, Wrench, motion, segment_mean
+from boatsim.physics.base import Array, Effect, SignalSegment, Wrench, make_motion, segment_mean
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
 from boatsim.physics.effects.damping import LinearDamping
@@ -59,16 +59,16 @@ def signals(kind: type[Effect], **given: float) -> Any:
 
 def test_balance_holds_a_speed_in_proportion_to_the_propellers_rate() -> None:
     balance = ApproachBalance(damping=90.0, speed=1.2, shaft_rate=10.0)
-    assert balance.wrench(motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
+    assert balance.wrench(make_motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
         Wrench()
     )
-    assert balance.wrench(motion(u=1.0), signals(ApproachBalance, shaft=10.0)).X == pytest.approx(
-        18.0
-    )
+    assert balance.wrench(
+        make_motion(u=1.0), signals(ApproachBalance, shaft=10.0)
+    ).X == pytest.approx(18.0)
     stronger = replace(balance, gain=1.1)
-    assert stronger.wrench(motion(u=0.99), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
-        Wrench(), abs=1e-12
-    )
+    assert stronger.wrench(
+        make_motion(u=0.99), signals(ApproachBalance, shaft=7.5)
+    ) == pytest.approx(Wrench(), abs=1e-12)
 
 
 def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
@@ -80,7 +80,7 @@ def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
     whole = SpeedScaledSteering(
         hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1
     ).with_all_parameters(SHIP)
-    m, helm = motion(**TURN), signals(Rudder, angle=HELM)
+    m, helm = make_motion(**TURN), signals(Rudder, angle=HELM)
     ratio = m.u / 1.179
     of_hull, of_rudder = np.array(hull.wrench(m)), np.array(rudder.wrench(m, helm))
     more = whole.wrench(m, signals(SpeedScaledSteering, angle=HELM))
@@ -91,7 +91,9 @@ def test_speed_scaling_vanishes_at_the_approach_speed_whatever_its_shares() -> N
     shares = SpeedScaledSteering(
         hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3
     ).with_all_parameters(SHIP)
-    at_it = shares.wrench(motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM))
+    at_it = shares.wrench(
+        make_motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM)
+    )
     assert at_it == pytest.approx(Wrench(), abs=1e-12)
 
 
@@ -103,7 +105,7 @@ def test_astern_the_water_meets_the_rudder_from_behind_and_the_hull_still_damps(
     assert isinstance(hull, LinearDamping) and isinstance(rudder, Rudder)
 
     def whole(u: float, v: float, helm: float) -> Array:
-        m = motion(u=u, v=v)
+        m = make_motion(u=u, v=v)
         parts = hull.wrench(m), rudder.wrench(m, signals(Rudder, angle=helm))
         return np.array([*parts, scaled.wrench(m, signals(SpeedScaledSteering, angle=helm))])[
             :, [1, 5]
@@ -125,7 +127,7 @@ def test_a_race_adds_to_a_blade_what_momentum_theory_adds_to_the_square_of_its_i
             for more in (0.0, faster)
         ]
         normal = (slope[1] - slope[0]) * sin(delta)
-        seen = race.wrench(motion(u=u), signals(RudderRace, angle=delta, thrust=thrust))
+        seen = race.wrench(make_motion(u=u), signals(RudderRace, angle=delta, thrust=thrust))
         assert seen == pytest.approx(
             Wrench(X=-normal * sin(delta), Y=-normal * cos(delta), N=1.4 * normal * cos(delta)),
             rel=1e-12,
@@ -138,21 +140,21 @@ def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from
     race = RudderRace(normal_force_per_thrust=0.5).with_all_parameters(SHIP)
     rudder = SHIP.effect("rudder")
     assert isinstance(rudder, Rudder)
-    assert not any(race.wrench(motion(u=0.5), signals(RudderRace, angle=0.4, thrust=-20.0)))
-    ahead = race.wrench(motion(u=0.5), signals(RudderRace, angle=0.4, thrust=20.0))
-    own = rudder.wrench(motion(u=0.5), signals(Rudder, angle=0.4))
+    assert not any(race.wrench(make_motion(u=0.5), signals(RudderRace, angle=0.4, thrust=-20.0)))
+    ahead = race.wrench(make_motion(u=0.5), signals(RudderRace, angle=0.4, thrust=20.0))
+    own = rudder.wrench(make_motion(u=0.5), signals(Rudder, angle=0.4))
     assert ahead.Y * own.Y > 0.0 and ahead.N / ahead.Y == pytest.approx(own.N / own.Y)
 
 
 @pytest.mark.parametrize("u", [0.7, -0.7])
 def test_forward_speed_damping_is_linear_damping_in_proportion_to_the_speed(u: float) -> None:
-    m = motion(u=u, v=0.2, p=-0.3, r=0.4)
+    m = make_motion(u=u, v=0.2, p=-0.3, r=0.4)
     linear = LinearDamping(sway=0.7 * 8.0, roll=0.7 * 2.0, yaw=0.7 * 3.0)
     assert ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(m) == pytest.approx(
         linear.wrench(m)
     )
     assert not any(
-        ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(motion(v=0.2, p=-0.3, r=0.4))
+        ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(make_motion(v=0.2, p=-0.3, r=0.4))
     )
 
 
@@ -161,16 +163,16 @@ def test_lift_at_a_place_is_a_force_there_by_the_drift_there_and_astern_the_hull
     u: float,
 ) -> None:
     lift = ForwardSpeedDamping(sway=8.0, at=-0.4)
-    seen, there = lift.wrench(motion(u=u, v=0.2, r=0.3)), -0.4 if u > 0.0 else 0.4
-    assert (lift.wrench(motion(u=u, v=0.2)).N / lift.wrench(motion(u=u, v=0.2)).Y) == pytest.approx(
-        there
-    )
+    seen, there = lift.wrench(make_motion(u=u, v=0.2, r=0.3)), -0.4 if u > 0.0 else 0.4
+    assert (
+        lift.wrench(make_motion(u=u, v=0.2)).N / lift.wrench(make_motion(u=u, v=0.2)).Y
+    ) == pytest.approx(there)
     assert seen.Y == pytest.approx(-8.0 * abs(u) * (0.2 + there * 0.3))
     assert seen.N == pytest.approx(there * seen.Y)
 
 
 def test_speed_lost_in_a_turn_is_the_coriolis_force_of_the_sway_added_mass() -> None:
-    m = motion(**TURN)
+    m = make_motion(**TURN)
     assert SpeedLossInTurn(mass=2486.0).wrench(m).X == pytest.approx(
         AddedMass(sway=2486.0).wrench(m).X
     )
@@ -181,7 +183,7 @@ def test_steering_drag_is_the_part_along_the_ship_of_a_force_normal_to_the_blade
     slope = 53.0  # [N/rad] of the force normal to the blade
     for delta in (-0.2, 0.3):
         along = -slope * sin(delta) * sin(delta)
-        seen = SteeringDrag(drag=slope).wrench(motion(), signals(Rudder, angle=delta), None)
+        seen = SteeringDrag(drag=slope).wrench(make_motion(), signals(Rudder, angle=delta), None)
         assert seen.X == pytest.approx(along, rel=delta**2 / 2.5)
 
 
@@ -208,7 +210,7 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
 def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
     own = RightingArm(stiffness=822.3, list=0.01)
     boat = replace(SHIP, effects=(own,)).with_completed_effect(MetacentricHeightError(factor=0.64))
-    inertia, m = 135.4, motion(phi=0.11)
+    inertia, m = 135.4, make_motion(phi=0.11)
     period = [2 * pi * sqrt(inertia * 0.1 / -arm.wrench(m).K) for arm in (own, boat.effects[0])]
     assert period[1] / period[0] == pytest.approx(1.25)
 
@@ -220,8 +222,10 @@ def test_thrust_lost_with_speed_scales_each_thruster(u: float) -> None:
         given, less = (
             signals(Thruster, thrust=t, angle=0.3) for t in (thrust, thrust - 0.2 * u * abs(thrust))
         )
-        seen = np.add(own.wrench(motion(u=u), given), loss.wrench(motion(u=u), given, own.values()))
-        assert seen == pytest.approx(own.wrench(motion(u=u), less))
+        seen = np.add(
+            own.wrench(make_motion(u=u), given), loss.wrench(make_motion(u=u), given, own.values())
+        )
+        assert seen == pytest.approx(own.wrench(make_motion(u=u), less))
 
 
 @pytest.mark.parametrize(("u", "kappa"), [(2.0, 0.2), (14.0, 0.5), (35.0, 1.0)])
@@ -229,9 +233,9 @@ def test_planing_lag_is_the_kappa_form(u: float, kappa: float) -> None:
     values = PlaningLag(full_speed=28.0, least=0.2, hull_mass=1.0).values()
     others = Wrench(X=5.0 - drag(u))
     force = others.X - 0.4 * 0.5  # per unit mass, with v r
-    lag = PlaningLag.reaction(motion(u=u, v=-0.4, r=0.5), others, values)
+    lag = PlaningLag.reaction(make_motion(u=u, v=-0.4, r=0.5), others, values)
     assert force + lag.X == pytest.approx(kappa * force)
-    assert PlaningLag.reaction(motion(u=u), Wrench(), values).X == 0.0  # steady
+    assert PlaningLag.reaction(make_motion(u=u), Wrench(), values).X == 0.0  # steady
 
 
 def test_revolutions_a_minute_add_to_those_a_second() -> None:

@@ -33,8 +33,8 @@ def test_the_thrust_is_that_of_the_table(tmp_path: Path, count: int) -> None:
     program = Program(with_curve(tmp_path, POINTS[-count:]))
     values, on = program.values(), program.effect_switches()
     for command in np.linspace(-120.0, 120.0, 25):
-        act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-        program.simulation.advance_actuators(
+        act, memory = np.zeros(program.actuator_signal_size), np.zeros(program.memory_size)
+        program.simulation_functions.advance_actuators(
             program.command_array({"throttle_port": command}), memory, 0.1, values, on, act
         )
         settled = dict(zip(program.vessel.actuators, act.tolist(), strict=False))

@@ -115,10 +115,12 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
     held = {"throttle": np.ones(rows), "jet_rad": np.repeat(rng.uniform(-0.2, 0.2, rows // 5), 5)}
     held["elevator_rad"] = np.repeat(rng.uniform(0.0, 0.9, rows // 4), 4)
     commands, ends = np.column_stack([held[c] for c in program.vessel.commands]), []
-    code = program.simulation
+    code = program.simulation_functions
     for substeps in (1, 20):
         memory, path = np.zeros(program.memory_size), np.zeros((rows + 1, 2 * code.NQ))
-        code.settle_actuators(commands[0], memory, values, on, np.zeros(3 * program.held_size))
+        code.settle_actuators(
+            commands[0], memory, values, on, np.zeros(3 * program.actuator_signal_size)
+        )
         code.rollout(
             VesselNumbers(np.array(program.body), values, on),
             program.vessel_state(np.zeros(2 * code.NQ), memory),

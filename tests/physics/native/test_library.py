@@ -16,8 +16,8 @@ from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.native import build
-from boatsim.physics.native.calls import prepare_call
-from boatsim.physics.native.library import NativeProgram, program_source
+from boatsim.physics.native.calls import partial_call
+from boatsim.physics.native.library import NativeProgram, translate_program
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Recording
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(DEBUG, reason="nothing is compiled")
 @pytest.fixture(autouse=True)
 def _with_a_compiler() -> None:
     try:
-        build.compiler()
+        build.compiler_path()
     except build.NoCompiler as reason:
         pytest.skip(str(reason))
 
@@ -53,15 +53,15 @@ def cruise(vessel: Vessel) -> Recording:
 @pytest.mark.parametrize("name", shipped_content_names("vessel"))
 def test_every_vessel_has_a_c_form(name: str) -> None:
     module = Program(load_vessel(name)).module
-    assert "kalman_filter" in program_source(module, "estimation")
-    assert "passive_callback" in program_source(module, "simulation")
+    assert "kalman_filter" in translate_program(module, "estimation")
+    assert "passive_callback" in translate_program(module, "simulation")
 
 
 def test_a_program_with_candidates_has_a_c_form_without_the_callback_of_mujoco() -> None:
     program = Program(load_vessel("joystick_boat"), candidates=(CommandDelay(),))
-    source = program_source(program.module, "simulation")
+    source = translate_program(program.module, "simulation")
     assert "rollout" in source and "passive" not in source
-    assert isinstance(program.simulation, NativeProgram)
+    assert isinstance(program.simulation_functions, NativeProgram)
 
 
 def batch_states(vessel: Vessel) -> np.ndarray:
@@ -106,7 +106,7 @@ def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     found = []
     for switch in ("1", "0"):
         monkeypatch.setenv("BOATSIM_NATIVE", switch)
-        assert isinstance(Program(vessel).simulation, NativeProgram) == (switch == "1")
+        assert isinstance(Program(vessel).simulation_functions, NativeProgram) == (switch == "1")
         found.append(states(vessel))
     assert np.array_equal(*found) and np.ptp(found[0]) > 0.1
 
@@ -115,14 +115,14 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
     program = Program(load_vessel("joystick_boat"))
     k, values, on = np.zeros(program.module.K), program.values(), program.effect_switches()
     commands, memory = program.command_array({"pwm_port": 100.0}), np.zeros(program.memory_size)
-    act = np.zeros(program.held_size)
-    program.simulation.compute_mass_constants(program.body, values, on, k)
+    act = np.zeros(program.actuator_signal_size)
+    program.simulation_functions.compute_mass_constants(program.body, values, on, k)
     found = []
-    for code in (program.simulation, program.module):
+    for code in (program.simulation_functions, program.module):
         memory[:] = act[:] = 0.0
-        advance = prepare_call(code, "advance_actuators", commands, memory, ..., values, on, act)
+        advance = partial_call(code, "advance_actuators", commands, memory, ..., values, on, act)
         y = np.zeros(2 * program.module.NQ)
-        step = prepare_call(
+        step = partial_call(
             code, "step_in_place", ..., y, ..., act, values, on, k, np.zeros(program.module.NQ)
         )
         for dt in (0.02, 0.05):
@@ -136,17 +136,17 @@ def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
 
 def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> None:
     program = Program(load_vessel("joystick_boat"))
-    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.held_size)
+    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.actuator_signal_size)
     given = 0.0, y, act, np.int64(0), program.values(), program.effect_switches()
-    force = prepare_call(program.simulation, "total_body_force", *given)
+    force = partial_call(program.simulation_functions, "total_body_force", *given)
     for speed in (0.5, 1.0):
         y[program.module.NQ] = speed
-        assert force() == program.simulation.total_body_force(*given)
+        assert force() == program.simulation_functions.total_body_force(*given)
     assert force()[0] < 0.0  # resistance
 
 
 def test_an_array_of_another_type_is_refused() -> None:
-    code = Program(load_vessel("joystick_boat")).simulation
+    code = Program(load_vessel("joystick_boat")).simulation_functions
     with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):
         code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
 
@@ -155,13 +155,13 @@ def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
     tmp_path: Path,
 ) -> None:
     program = Program(box_in_measured_wave(tmp_path))
-    assert isinstance(program.functions, NativeProgram)
+    assert isinstance(program.estimation_functions, NativeProgram)
     vessel = program.vessel
     wave = vessel.inputs.index("wave_m")
     found: list[Any] = []
-    for code in (program.functions, program.module):
+    for code in (program.estimation_functions, program.module):
         values, on = program.values(), program.effect_switches()
-        memory, act = np.zeros(program.memory_size), np.zeros(program.held_size)
+        memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
         command = np.zeros(len(vessel.inputs))
         code.settle_actuators(command, memory, values, on, act)
         rows = []
@@ -185,7 +185,7 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
     for switch in ("1", "0"):
         monkeypatch.setenv("BOATSIM_NATIVE", switch)
         program, _ = diagnosis_program(vessel)
-        assert isinstance(program.functions, NativeProgram) == (switch == "1")
+        assert isinstance(program.estimation_functions, NativeProgram) == (switch == "1")
         levels = prior_noise_levels(vessel, [cruise(vessel)])
         mapped = map_recording(cruise(vessel), program)
         problem = Problem([mapped], levels, {})
@@ -201,7 +201,7 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
 
 def test_a_library_is_built_once_and_again_if_it_is_damaged(tmp_path: Path) -> None:
     def made() -> str:
-        return program_source(module, "simulation")
+        return translate_program(module, "simulation")
 
     module = Program(load_vessel("kvlcc2_roll")).module
     build.load_library(tmp_path, "simulation", made)
@@ -232,4 +232,4 @@ def test_without_a_compiler_the_program_is_that_of_numba(
     else:
         monkeypatch.setenv("CC", str(refusing if case == "fails" else tmp_path / "none"))
     program = Program(load_vessel("kvlcc2_roll"))
-    assert program.functions is program.simulation is program.module
+    assert program.estimation_functions is program.simulation_functions is program.module

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from boatsim.physics.debugging import DEBUG
-from boatsim.physics.native.build import NoCompiler, compile_library, compiler
+from boatsim.physics.native.build import NoCompiler, compile_library, compiler_path
 from boatsim.physics.native.calls import NativeFunction
 from boatsim.physics.native.declarations import NotTranslatable
-from boatsim.physics.native.entries import Entry, numbers
+from boatsim.physics.native.entries import Entry, tuple_of_numbers
 from boatsim.physics.native.exports import export_function
 from boatsim.physics.native.kinds import MATRIX, REAL, TRUTH, VECTOR, WHOLE
 from boatsim.physics.native.translate import Translation
@@ -35,7 +35,7 @@ class Pair(NamedTuple):
 
 def command() -> str:
     try:
-        return compiler()
+        return compiler_path()
     except NoCompiler as reason:
         pytest.skip(str(reason))
 
@@ -49,7 +49,7 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
         program = Translation()
         export_function(program, "called", function, entry.arguments)
         path = folder / f"{function.__name__}.so"
-        compile_library(program.text, path, command())
+        compile_library(program.source_text, path, command())
         return NativeFunction(ctypes.CDLL(str(path)).called, entry)
 
     return compiled
@@ -79,7 +79,7 @@ NUMBER = st.floats(-1e6, 1e6)
 def test_arithmetic_is_that_of_python(
     native: Callable[..., Any], x: float, y: float, n: int
 ) -> None:
-    call = _once(native, arithmetic, Entry((REAL, REAL, WHOLE), numbers))
+    call = _once(native, arithmetic, Entry((REAL, REAL, WHOLE), tuple_of_numbers))
     assert call(x, y, n) == pytest.approx(arithmetic(x, y, n), rel=1e-15)  # math.hypot has its own
 
 
@@ -89,7 +89,7 @@ def powers(x: float, y: float) -> tuple[float, ...]:
 
 @pytest.mark.parametrize("x", [-3.1, 0.0, 0.7, 1e5])
 def test_small_integer_powers_are_products(x: float, native: Callable[..., Any]) -> None:
-    found = _once(native, powers, Entry((REAL, REAL), numbers))(x, 0.3)
+    found = _once(native, powers, Entry((REAL, REAL), tuple_of_numbers))(x, 0.3)
     assert found[:3] == (x * x, x * (x * x), (x * x) * (x * x))
     assert found == pytest.approx(powers(x, 0.3), rel=1e-15)
 
@@ -142,7 +142,7 @@ def tuples(x: float, k: int) -> tuple[float, ...]:
 
 @pytest.mark.parametrize("k", [0, 1])
 def test_tuples_and_named_tuples_are_those_of_python(k: int, native: Callable[..., Any]) -> None:
-    call = _once(native, tuples, Entry((REAL, WHOLE), numbers))
+    call = _once(native, tuples, Entry((REAL, WHOLE), tuple_of_numbers))
     assert call(1.5, k) == tuple(map(float, tuples(1.5, k)))
 
 

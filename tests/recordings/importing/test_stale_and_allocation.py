@@ -55,11 +55,11 @@ def test_commands_go_on_in_rows_without_a_new_message():
 def test_an_allocation_gives_the_shaft_rate_of_a_thrust_within_its_limits():
     allocation = Allocation(sum=["X"], low=-50.0, high=100.0, coefficient=0.01, exponent=2.0,
                             inverse=True, coefficient_below=0.005)  # fmt: skip
-    assert allocation.of(np.array([100.0, 400.0, -50.0, -300.0, 0.0])) == pytest.approx(
+    assert allocation.convert(np.array([100.0, 400.0, -50.0, -300.0, 0.0])) == pytest.approx(
         [100.0, 100.0, -100.0, -100.0, 0.0]
     )
     forward = allocation.model_copy(update={"inverse": False})
-    assert forward.of(np.array([10.0, -10.0])) == pytest.approx([1.0, -0.5])
+    assert forward.convert(np.array([10.0, -10.0])) == pytest.approx([1.0, -0.5])
 
 
 def test_terms_of_different_streams_hold_their_values_and_a_curve_saturates():

@@ -7,7 +7,7 @@ from pathlib import Path
 import tomlkit
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.candidates import base_name
+from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import CoefficientRelease
@@ -88,7 +88,7 @@ class PatchedVesselStudy:
     def without(self, name: str) -> Path:
         """Write the patched vessel without one of its identified effects; return the file."""
         document = tomlkit.parse(self.file.read_text(encoding="utf-8"))
-        gone = [found for found in document["found"] if base_name(found) == name]
+        gone = [found for found in document["found"] if name_without_prefixes(found) == name]
         for found in gone:
             blocks = document["effect"]
             names = [block.get("name", block["use"]) for block in blocks]
@@ -105,7 +105,9 @@ class PatchedVesselStudy:
 
     def _is_removable(self, name: str) -> bool:
         """Whether an effect is in the vessel file, or its changes come from one round only."""
-        return len(self._rounds_with(name)) == 1 or name in map(base_name, self.vessel.found)
+        return len(self._rounds_with(name)) == 1 or name in map(
+            name_without_prefixes, self.vessel.found
+        )
 
     def _restore(self, document: tomlkit.TOMLDocument, name: str) -> None:
         """Restore the numbers that a release changed."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from boatsim.diagnosis import loading, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
-from boatsim.diagnosis.loading import Loaded
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.physics.base import Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -34,7 +34,7 @@ class Case:
 
 
 # opens altered recordings, with the file of a patched vessel or with the published vessel
-Opener = Callable[[str | None, Alteration], Loaded]
+Opener = Callable[[str | None, Alteration], LoadedRecordings]
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,12 @@ class Study:
 # ---- recordings of each set
 
 
-def split(fitted: Sequence[Recording], held_out: Sequence[Recording], vessel: Vessel) -> Loaded:
+def split(
+    fitted: Sequence[Recording], held_out: Sequence[Recording], vessel: Vessel
+) -> LoadedRecordings:
     """Return recordings of one vessel as a diagnosis takes them."""
     paths = map(attrgetter("path"), (*fitted, *held_out))
-    return Loaded(fitted, held_out, dict.fromkeys(paths, vessel), "one recording")
+    return LoadedRecordings(fitted, held_out, dict.fromkeys(paths, vessel), "one recording")
 
 
 def planar_opener(
@@ -74,13 +76,13 @@ def planar_opener(
         hertz: Largest rate of the rows [Hz], 0 for the vessel's usual one.
     """
 
-    def open_runs(patched: str | None, alter: Alteration) -> Loaded:
+    def open_runs(patched: str | None, alter: Alteration) -> LoadedRecordings:
         runs = []
         for run, seconds in (*fitted.items(), *held_out.items()):
             path = RECORDINGS / name / "runs" / f"{run}.csv"
             whole, vessel = loading.open_recording(path, patched or published, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
-            rate = priors.used_sample_rate(vessel)
+            rate = priors.downsampling_rate(vessel)
             thin = altered.thinned(min(rate, hertz or rate))
             runs.append(replace(clean_recording(thin, vessel), name=run))
         return split(runs[: len(fitted)], runs[len(fitted) :], vessel)
@@ -93,7 +95,7 @@ def clean_recording(recording: Recording, vessel: Vessel) -> Recording:
     return drop_position_outliers(drop_repeated_values(recording), vessel)
 
 
-def open_release_at_rest(patched: str | None, alter: Alteration) -> Loaded:
+def open_release_at_rest(patched: str | None, alter: Alteration) -> LoadedRecordings:
     """Return windows of 20 s of the release at rest, every second one held out."""
     parts, vessel = _release(
         kvlcc2_roll_decay.AT_REST, patched, alter, kvlcc2_roll_decay.windows_of
@@ -101,7 +103,7 @@ def open_release_at_rest(patched: str | None, alter: Alteration) -> Loaded:
     return split(parts[::2], parts[1::2], vessel)
 
 
-def open_release_at_speed(patched: str | None, alter: Alteration) -> Loaded:
+def open_release_at_speed(patched: str | None, alter: Alteration) -> LoadedRecordings:
     """Return thirds of the release at 15.5 kn, the middle one held out."""
     parts, vessel = _release(
         kvlcc2_roll_decay.AT_SPEED, patched, alter, kvlcc2_roll_decay.thirds_of
@@ -117,7 +119,7 @@ def _release(
 ) -> tuple[list[Recording], Vessel]:
     path = kvlcc2_roll_decay.DATA / f"{name}.csv"
     whole, vessel = loading.open_recording(path, patched, ())
-    return cut(replace(alter(whole).thinned(priors.used_sample_rate(vessel)), name=name)), vessel
+    return cut(replace(alter(whole).thinned(priors.downsampling_rate(vessel)), name=name)), vessel
 
 
 ESSO_FITTED = ("random_0806_1624_4", "zigzag_0731_1350")
@@ -125,7 +127,7 @@ ESSO_HELD_OUT = "zigzag_0731_1403"
 ESSO_LONGEST = 150.0  # [s] of a stretch, to limit the computing time
 
 
-def open_esso_osaka(patched: str | None, alter: Alteration) -> Loaded:
+def open_esso_osaka(patched: str | None, alter: Alteration) -> LoadedRecordings:
     """Return the longest sound stretch of three runs, one of them held out.
 
     Runs are cut where positions jump, before they are altered.
@@ -138,7 +140,7 @@ def open_esso_osaka(patched: str | None, alter: Alteration) -> Loaded:
         stretches = esso_osaka_pond.sound_stretches(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
         part = alter(longest.between(longest.t[0], longest.t[0] + ESSO_LONGEST))
-        thin = drop_position_outliers(part.thinned(priors.used_sample_rate(vessel)), vessel)
+        thin = drop_position_outliers(part.thinned(priors.downsampling_rate(vessel)), vessel)
         found.append(replace(thin, name=run))
     return split(found[:-1], found[-1:], vessel)
 

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from boatsim.diagnosis.candidates import FURTHER, base_name
+from boatsim.diagnosis.candidates import FURTHER, name_without_prefixes
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -296,7 +296,7 @@ def with_effect(problem: Problem, base: Fit, effect: Effect, values: Mapping[str
     """Return a fit with one more effect that starts at these values, all refitted."""
     params = type(effect).params()
     start = {}
-    for f in problem.parameters((effect.name,)):
+    for f in problem.free_parameters((effect.name,)):
         if f.effect == effect.name and not f.relative:
             usual = f.mean + START * f.sd
             start[f.name] = values.get(parameter_key(f.name, params[f.name].unit), usual)
@@ -308,7 +308,7 @@ def _fitted(diagnosis: Diagnosis, effect: Effect) -> dict[str, float]:
     """Return the values of an effect in an answer."""
     values: dict[str, float] = {}
     for entry in effects_of(diagnosis):
-        if entry["name"] == base_name(effect.name):
+        if entry["name"] == name_without_prefixes(effect.name):
             values |= values_of(entry)
     return values
 

@@ -1,4 +1,4 @@
-"""Slots of a compiled program: placeholder effects whose parameters are set to those of a term."""
+"""Placeholder effects of a compiled program, whose parameters are set to those of a term."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,7 +8,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.terms import COURSES
 
-# parameters of a slot that never acts: used where a term is an event of another recording
+# parameters of a placeholder that never acts: for a term that is an event of another recording
 NEVER = {"course": float(COURSES.index("within")), "begin": 0.0, "end": 0.0}
 
 
@@ -32,23 +32,28 @@ def unused_placeholder(problem: Problem, kind: type[SymbolicTerm], used: Sequenc
 
 
 def set_placeholder_term(
-    problem: Problem, slot: str, term: SymbolicTerm, recordings: Sequence[MappedRecording]
+    problem: Problem, placeholder: str, term: SymbolicTerm, recordings: Sequence[MappedRecording]
 ) -> None:
     """Set a placeholder effect of the compiled vessel program to a term of the symbolic regression.
 
+    A term that is an event of one recording (`term.run`) acts in that recording alone; in all
+    others the placeholder is set so that it never acts.
+
     Args:
         problem: The estimation problem.
-        slot: Name of the placeholder.
+        placeholder: Name of the placeholder.
         term: A term of the symbolic regression.
         recordings: Recordings whose parameter values are changed.
     """
     parameters = term.with_all_parameters(problem.program.vessel).law_parameters()
     for recording in recordings:
-        _set(problem, slot, parameters, recording.values)
+        _set(problem, placeholder, parameters, recording.values)
         if term.run not in ("", recording.name):
-            _set(problem, slot, NEVER, recording.values)
+            _set(problem, placeholder, NEVER, recording.values)
 
 
-def _set(problem: Problem, slot: str, parameters: Mapping[str, float], values: Array) -> None:
+def _set(
+    problem: Problem, placeholder: str, parameters: Mapping[str, float], values: Array
+) -> None:
     for name, value in parameters.items():
-        values[problem.program.parameter_index(slot, name)] = value
+        values[problem.program.parameter_index(placeholder, name)] = value

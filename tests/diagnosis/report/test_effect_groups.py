@@ -12,11 +12,11 @@ from unmeasured import unmeasured
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.layers import Layers, classify_effects
+from boatsim.diagnosis.report.effect_groups import EffectGroups, classify_effects
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import console_lines, refined_rows, verdict_sentences
+from boatsim.diagnosis.report.sentences import console_lines, refined_number_rows, verdict_sentences
 from boatsim.physics import vessel
 from boatsim.view.page_blocks import Table
 from tests.diagnosis.report.test_page import planar
@@ -37,18 +37,18 @@ FITTED = {  # value and standard deviation by effect and parameter
 }
 
 
-def layers_of(
+def groups_of(
     text: str,
     folder: Path,
     coefficients: Mapping[tuple[str, str], tuple[float, float]] | None = None,
-) -> Layers:
-    """The layers of a fit that is made up: all effects of FITTED, and factors of coefficients."""
+) -> EffectGroups:
+    """The effect groups of a fit that is made up: all effects of FITTED, and factors of coefficients."""
     boat = vessel.load_vessel(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
     program, _ = diagnosis_program(boat)
     mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
     problem = Problem([mapped], levels, {"damping": 1.0, "thrust": 0.3})
-    free = problem.parameters(tuple(FITTED))
+    free = problem.free_parameters(tuple(FITTED))
     theta, sds = [], []
     for f in free:
         value = (coefficients or {}).get((f.effect, f.name), (1.0, 0.01))
@@ -77,14 +77,14 @@ def entry_of(problem: Problem, best: Fit, name: str) -> EffectEntry:
 
 
 def test_without_estimates_every_effect_of_known_size_is_missing_physics(tmp_path: Path) -> None:
-    layers = layers_of("", tmp_path, {("linear_damping", "surge"): (1.4, 0.02)})
-    names = [e["name"] for e in layers.effects]
+    groups = groups_of("", tmp_path, {("linear_damping", "surge"): (1.4, 0.02)})
+    names = [e["name"] for e in groups.effects]
     assert names == ["thrust_lag", "added_mass_error", "weak_reverse", "quadratic_damping"]
-    assert not layers.refined
+    assert not groups.refined
 
 
 def test_an_effect_smaller_than_its_spread_is_only_possible(tmp_path: Path) -> None:
-    (possible,) = layers_of("", tmp_path).also_possible
+    (possible,) = groups_of("", tmp_path).also_possible
     assert possible["name"] == "sway_yaw_coupling" and possible["gain_nats"] == 20.0
     assert "do not determine its size: sway 15 ± 154 kg and yaw" in possible["why"]
 
@@ -94,9 +94,9 @@ def test_better_values_of_estimates_are_refined_numbers(tmp_path: Path) -> None:
         ("linear_damping", "surge"): (1.4, 0.02),
         ("linear_damping", "sway"): (1.4, 0.3),
     }
-    layers = layers_of(ESTIMATED, tmp_path, coefficients)
-    assert [e["name"] for e in layers.effects] == ["weak_reverse"]
-    refined = {e["number"]: e for e in layers.refined}
+    groups = groups_of(ESTIMATED, tmp_path, coefficients)
+    assert [e["name"] for e in groups.effects] == ["weak_reverse"]
+    refined = {e["number"]: e for e in groups.refined}
     # those that differ by less than their sd are left out; sway damping is within two
     assert list(refined) == [
         "thrust lag",
@@ -119,15 +119,15 @@ def test_better_values_of_estimates_are_refined_numbers(tmp_path: Path) -> None:
 
 
 def test_a_number_alone_may_be_an_estimate(tmp_path: Path) -> None:
-    layers = layers_of('[estimated]\n"thrust_lag.time_constant" = 1.0\n', tmp_path)
-    assert [e["number"] for e in layers.refined] == ["thrust lag"]
-    assert "added_mass_error" in [e["name"] for e in layers.effects]
+    groups = groups_of('[estimated]\n"thrust_lag.time_constant" = 1.0\n', tmp_path)
+    assert [e["number"] for e in groups.refined] == ["thrust lag"]
+    assert "added_mass_error" in [e["name"] for e in groups.effects]
 
 
 def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path) -> None:
     findings = planar()
-    refined = layers_of(ESTIMATED, tmp_path).refined
-    possible = layers_of(ESTIMATED, tmp_path).also_possible
+    refined = groups_of(ESTIMATED, tmp_path).refined
+    possible = groups_of(ESTIMATED, tmp_path).also_possible
     answer = findings.answer | {"refined": refined, "also_possible": possible}
     sentence = verdict_sentences(answer)
     assert sentence.endswith("Four numbers of the rough model were refined.")
@@ -136,20 +136,20 @@ def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path
     assert verdict_sentences(answer).startswith(
         "No missing effect was found: with four numbers of the rough model refined"
     )
-    assert refined_rows(answer)[0][0] == "thrust lag"
-    assert refined_rows(answer)[0][-1] == "not in the file"
-    assert refined_rows(answer)[1][-1] == "+50 %"
+    assert refined_number_rows(answer)[0][0] == "thrust lag"
+    assert refined_number_rows(answer)[0][-1] == "not in the file"
+    assert refined_number_rows(answer)[1][-1] == "+50 %"
     assert replace(findings, answer=answer).has_added_effects
 
 
 def test_log_and_missing_physics_stand_before_the_refined_numbers(tmp_path: Path) -> None:
     findings = planar()
-    layers = layers_of(ESTIMATED, tmp_path)
+    groups = groups_of(ESTIMATED, tmp_path)
     error = findings.answer["effects"][0] | {"name": "clock_offset", "kind": "measurement"}
     answer = findings.answer | {
         "effects": [*findings.answer["effects"], error],
-        "refined": layers.refined,
-        "also_possible": layers.also_possible,
+        "refined": groups.refined,
+        "also_possible": groups.also_possible,
     }
     findings = replace(findings, answer=answer)
     titles = [line for line in console_lines(findings) if line.endswith(":")]

@@ -1,4 +1,4 @@
-"""Layers of an answer: missing physics, refined numbers of the vessel, effects of unknown size."""
+"""Groups of the identified effects: missing physics, refined numbers, possible effects."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -12,17 +12,17 @@ from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedE
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import estimated_number_sd, sd_of_corrected_estimates
-from boatsim.view.formatting import format_parameter, join_words, words_of_name
+from boatsim.view.formatting import format_parameter, join_words, name_in_words
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
 INERTIA_UNIT = "kg m^2"
 
 
-class Layers(NamedTuple):
+class EffectGroups(NamedTuple):
     """Identified effects of a diagnosis in three groups, as diagnosis.json has them.
 
-    They are missing physics or measurement errors, refined numbers of the vessel file, and effects
-    that are only possible.
+    They are missing physics or measurement errors, refined numbers of the vessel file, and possible
+    effects, whose size the recordings do not determine.
     """
 
     effects: list[EffectEntry]  # missing physics and errors of the measurement
@@ -54,11 +54,13 @@ class _Number(NamedTuple):
         }
 
 
-def classify_effects(problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]) -> Layers:
-    """Separate identified effects into missing physics, refined numbers and uncertain effects.
+def classify_effects(
+    problem: Problem, best: Fit, entries: Mapping[str, EffectEntry]
+) -> EffectGroups:
+    """Separate identified effects into missing physics, refined numbers and possible effects.
 
     An effect refines a number if the vessel file calls that number an estimate. An effect is
-    uncertain if all its strengths are smaller than their standard deviations.
+    only possible if all its strengths are smaller than their standard deviations.
 
     Args:
         problem: The estimation problem.
@@ -66,20 +68,20 @@ def classify_effects(problem: Problem, best: Fit, entries: Mapping[str, EffectEn
         entries: Their entries, by the name of the candidate.
     """
     vessel = problem.program.vessel
-    layers = Layers([], [], [])
+    groups = EffectGroups([], [], [])
     changed = set[tuple[str, str]]()
     for name, entry in entries.items():
         effect = problem.candidates[name]
         if not _has_known_size(problem, best, effect):
-            layers.also_possible.append(_possible(best, effect, entry))
+            groups.also_possible.append(_possible(best, effect, entry))
         elif sd_of_corrected_estimates(effect, vessel, vessel.estimated) is None:
-            layers.effects.append(entry)
+            groups.effects.append(entry)
         else:
             for number in _refined_numbers(problem, best, effect):
-                layers.refined.append({**entry, **number.entry(entry["name"])})
+                groups.refined.append({**entry, **number.entry(entry["name"])})
             changed |= {(change.owner, change.key) for change in _changes(problem, effect)}
-    layers.refined.extend(_refined_coefficients(problem, best, changed))
-    return layers
+    groups.refined.extend(_refined_coefficients(problem, best, changed))
+    return groups
 
 
 def _strengths(best: Fit, effect: Effect) -> list[FreeParameter]:
@@ -206,7 +208,7 @@ def _refined_coefficients(
             continue
         at = free.at[0]
         before = float(recording.values[at])
-        words = _words_of_number(words_of_name(free.effect), free.name)
+        words = _words_of_number(name_in_words(free.effect), free.name)
         unit = _unit(problem, owners[0], free.name)
         number = _Number(words, before, float(after[at]), abs(before) * float(sd), unit)
         yield number.entry(f"{free.effect}.{free.name}")
@@ -221,7 +223,7 @@ def _unit(problem: Problem, owner: str, key: str) -> str:
 
 def _words_of_parameter(effect: Effect, name: str, count: int) -> str:
     """Words for a number: that of the effect if it has only one, else with axis or name."""
-    words = words_of_name(type(effect).type_name()).removesuffix(" error")
+    words = name_in_words(type(effect).type_name()).removesuffix(" error")
     if count == 1 and name not in AXES:
         return words
     return _words_of_number(words, name)
@@ -231,7 +233,7 @@ def _words_of_number(words: str, name: str) -> str:
     """Words for one of several numbers: damping in surge, damping exponent in sway."""
     axis, _, rest = name.partition("_")
     if axis not in AXES:
-        return f"{words}, {words_of_name(name)}"
+        return f"{words}, {name_in_words(name)}"
     if not rest or rest == "factor" or rest in words:
         return f"{words} in {axis}"
-    return f"{words} in {axis}, {words_of_name(rest)}"
+    return f"{words} in {axis}, {name_in_words(rest)}"
