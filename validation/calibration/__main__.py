@@ -29,6 +29,9 @@ def main() -> None:
     parser.add_argument(
         "--weights", action="store_true", help="print the weights of the signs that fit best"
     )
+    parser.add_argument(
+        "--new", nargs="*", default=(), help="with --weights: signs that are new or defined anew"
+    )
     parser.add_argument("--curve", type=Path, help="write the reliability curve to this SVG file")
     args = parser.parse_args()
     if not args.tables:
@@ -36,7 +39,7 @@ def main() -> None:
     records = list(campaign.records(args.out))
     table.print_tables(records)
     if args.weights:
-        weights.print_weights(records)
+        weights.print_weights(records, args.new)
     if args.curve:
         rows = table.reliability(table.statements(records))
         args.curve.write_text(reliability_curve(rows), encoding="utf-8")

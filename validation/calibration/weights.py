@@ -1,7 +1,13 @@
-"""Weights of the signs: logistic regression of right and wrong names over a campaign's records."""
+"""Weights of the signs: logistic regression of right and wrong names over a campaign's records.
 
-from collections.abc import Sequence
-from typing import Any
+The prior of each weight has its mean at the weight in use, which earlier campaigns gave. It is
+narrow, except for signs that are new or defined anew: the law of a simulated cause has exactly the
+form of a candidate, that of a real cause never, so that a campaign overstates what an inconsistent
+size tells. With wide priors true effects of real recordings lose their names.
+"""
+
+from collections.abc import Collection, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +23,9 @@ from validation.calibration.table import right_names
 
 Array = NDArray[np.float64]
 
-# prior sd of a weight per standard deviation of its feature: chosen by cross-validated likelihood
-WEIGHT_SD = 0.3
+# prior sd of the change of a weight, per standard deviation of its feature
+WEIGHT_SD = 0.02
+NEW_WEIGHT_SD = 0.3  # of new signs: chosen by cross-validated likelihood
 FOLDS = 10  # of the cross-validation, whole trials each
 
 Record = dict[str, Any]
@@ -67,28 +74,50 @@ def consistency(entry: dict[str, Any]) -> Consistency:
     given = dict(entry)
     given["recordings"] = tuple(Factor(**one) for one in entry["recordings"])
     given["held_out"] = Factor(**entry["held_out"])
+    given["axes"] = tuple(entry["axes"])
     for name in ("between_times", "between_ranges"):
         given[name] = Variation(**entry[name])
     return Consistency(**given)
 
 
-def fit_weights(X: Array, right: Array) -> tuple[float, Array]:
+class WeightPrior(NamedTuple):
+    """Normal prior of the weights (F,): mean, and sd per standard deviation of the feature."""
+
+    mean: Array
+    sd: Array
+
+
+def weight_prior(names: Sequence[str], new: Collection[str]) -> WeightPrior:
+    """Return the prior of the weights of features, with its mean at the weights in use.
+
+    Args:
+        names: Names of the features.
+        new: Those that are new or defined anew.
+    """
+    mean = np.array([getattr(DEFAULT.decide, name) for name in names])
+    return WeightPrior(mean, np.where(np.isin(names, list(new)), NEW_WEIGHT_SD, WEIGHT_SD))
+
+
+def fit_weights(X: Array, right: Array, prior: WeightPrior) -> tuple[float, Array]:
     """Return the intercept and the weights (F,) of the most probable logistic regression.
 
     Args:
         X: Features (N, F).
         right: Outcomes (N,), 0 or 1.
+        prior: Prior of the weights; the intercept is free.
     """
     mean, sd = X.mean(axis=0), X.std(axis=0)
     sd[sd == 0.0] = 1.0
+    centre = prior.mean * sd
     Z = np.column_stack([np.ones(len(X)), (X - mean) / sd])
 
     def loss(w: Array) -> tuple[float, Array]:
         odds = Z @ w
         value = np.logaddexp(0.0, odds) - right * odds
-        penalty = 0.5 * np.sum((w[1:] / WEIGHT_SD) ** 2)
+        change = (w[1:] - centre) / prior.sd
+        penalty = 0.5 * np.sum(change**2)
         slope = Z.T @ (expit(odds) - right)
-        slope[1:] += w[1:] / WEIGHT_SD**2
+        slope[1:] += change / prior.sd
         return float(value.sum() + penalty), slope
 
     w = minimize(loss, np.zeros(Z.shape[1]), jac=True, method="L-BFGS-B").x
@@ -96,22 +125,28 @@ def fit_weights(X: Array, right: Array) -> tuple[float, Array]:
     return float(w[0] - weights @ mean), weights
 
 
-def cross_validated(X: Array, right: Array, trials: Array) -> Array:
+def cross_validated(X: Array, right: Array, trials: Array, prior: WeightPrior) -> Array:
     """Return probabilities (N,), each from weights that were fitted to other trials."""
     found = np.zeros(len(X))
     for fold in range(FOLDS):
         inside = trials % FOLDS == fold
-        intercept, weights = fit_weights(X[~inside], right[~inside])
+        intercept, weights = fit_weights(X[~inside], right[~inside], prior)
         found[inside] = expit(intercept + X[inside] @ weights)
     return found
 
 
-def print_weights(records: Sequence[Record]) -> None:
-    """Print the settings of the decide stage, and their cross-validated likelihood."""
+def print_weights(records: Sequence[Record], new: Collection[str] = ()) -> None:
+    """Print the settings of the decide stage, and their cross-validated likelihood.
+
+    Args:
+        records: Records of the campaign.
+        new: Names of features that are new or defined anew.
+    """
     names, X, right, trials = examples(records)
-    intercept, weights = fit_weights(X, right)
+    prior = weight_prior(names, new)
+    intercept, weights = fit_weights(X, right, prior)
     print(f"{len(right)} identified effects, {right.mean():.3f} right")
-    probabilities = np.clip(cross_validated(X, right, trials), 1e-9, 1.0 - 1e-9)
+    probabilities = np.clip(cross_validated(X, right, trials, prior), 1e-9, 1.0 - 1e-9)
     log_loss = -np.mean(np.log(np.where(right > 0, probabilities, 1.0 - probabilities)))
     print(f"cross-validated log loss {log_loss:.3f}")
     print(f"intercept {intercept:.3g}")

@@ -6,15 +6,15 @@ corrected for the number of tests (Bonferroni).
 """
 
 from collections import defaultdict
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
 from scipy.special import chdtrc
 
 from boatsim.diagnosis.config import LocateConfig
-from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import force_sensitivities
 from boatsim.diagnosis.locate.smoothing import information_with_cross_terms, latent_force
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
@@ -49,6 +49,7 @@ class Structure:
         p_value: Corrected for the number of tests.
         tested: Number of tests.
         significant: Whether the p-value is below its limit.
+        gain_of_axis: Largest such gain of a force along each axis [nats].
     """
 
     axis: str
@@ -57,6 +58,15 @@ class Structure:
     p_value: float
     tested: int
     significant: bool
+    gain_of_axis: Mapping[str, float] = field(default_factory=dict)
+
+    def gain_along(self, axes: Iterable[str]) -> float:
+        """Return the largest gain in log likelihood by a force along one of some axes [nats].
+
+        Args:
+            axes: Names of the axes.
+        """
+        return max((self.gain_of_axis.get(axis, 0.0) for axis in axes), default=0.0)
 
     @property
     def varies_with_motion(self) -> bool:
@@ -88,18 +98,20 @@ class _Information:
         return 0.5 * (self.score - float(scores @ weights)) ** 2 / left
 
 
-def find_structure(problem: Problem, fit: Fit) -> Structure:
+def find_structure(problem: Problem, fit: Fit, levels: NoiseLevels | None = None) -> Structure:
     """Return the quantity with which the force that a fit leaves unexplained correlates most.
-
-    The level of that force is limited to a multiple of the assumed disturbance.
 
     Args:
         problem: The estimation problem.
         fit: Fit of the vessel model to the recordings of the problem.
+        levels: Levels of sensor noise and of that force; None: those of the fit, with the force
+            limited to a multiple of the assumed disturbance.
     """
     prior = prior_arrays(fit.free)
     slope = (prior.mean - fit.theta) / prior.sd
-    return _structure(problem, fit, np.eye(len(fit.free)), slope)
+    if levels is None:
+        levels = _limited(problem, fit)
+    return _structure(problem, fit, levels, np.eye(len(fit.free)), slope)
 
 
 def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
@@ -114,21 +126,28 @@ def find_structure_held_out(problem: Problem, fit: Fit) -> Structure:
     sd = prior_arrays(fit.free).sd
     covariance = fit.covariance / np.outer(sd, sd) + LEAST_VARIANCE * np.eye(len(sd))
     precision = np.asarray(np.linalg.inv(covariance), dtype=float)
-    return _structure(problem, fit, precision, np.zeros(len(sd)))
+    return _structure(problem, fit, _limited(problem, fit), precision, np.zeros(len(sd)))
 
 
-def _structure(problem: Problem, fit: Fit, precision: Array, slope: Array) -> Structure:
+def _limited(problem: Problem, fit: Fit) -> NoiseLevels:
+    """Levels of a fit with its latent force limited to a multiple of the assumed disturbance."""
+    limit = problem.config.locate.disturbance_factor * problem.ambient.force
+    return replace(fit.levels, force=np.minimum(fit.levels.force, limit))
+
+
+def _structure(
+    problem: Problem, fit: Fit, levels: NoiseLevels, precision: Array, slope: Array
+) -> Structure:
     """The structure beside the parameters, all in prior standard deviations.
 
     Args:
         problem: The estimation problem.
         fit: Fit of the vessel model.
+        levels: Levels of sensor noise and of the latent force.
         precision: Prior information (F, F) of the parameters.
         slope: Derivative (F,) of the log prior density.
     """
     config = problem.config.locate
-    limit = config.disturbance_factor * problem.ambient.force
-    levels = replace(fit.levels, force=np.minimum(fit.levels.force, limit))
     axes = dof_in_state_order(problem.program.vessel)
     none = np.zeros(len(precision))
     sums = defaultdict[tuple[str, str], _Information](lambda: _Information(0.0, 0.0, none))
@@ -164,7 +183,11 @@ def _structure(problem: Problem, fit: Fit, precision: Array, slope: Array) -> St
     axis, name = max(gains, key=lambda key: gains[key])
     gain = gains[axis, name]
     p_value = min(1.0, len(gains) * float(chdtrc(1, 2.0 * gain)))
-    return Structure(axis, name, gain, p_value, len(gains), p_value < config.structure_max_p)
+    of_axis = dict.fromkeys(axes, 0.0)
+    for (along, _), one_gain in gains.items():
+        of_axis[along] = max(of_axis[along], one_gain)
+    significant = p_value < config.structure_max_p
+    return Structure(axis, name, gain, p_value, len(gains), significant, of_axis)
 
 
 def candidate_regressors(

@@ -1,0 +1,76 @@
+"""A force that remains along other axes than those of an effect is no sign against it."""
+
+import numpy as np
+import pytest
+from pushed_boat import BOAT, sail
+
+from boatsim.diagnosis.candidates import candidate_library
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.fit import converge, unfitted_hypothesis
+from boatsim.diagnosis.locate.residual_structure import find_structure
+from boatsim.diagnosis.open_set.consistency import effect_consistency
+from boatsim.diagnosis.open_set.effect_axes import effect_axes
+from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
+from boatsim.diagnosis.search.ranking import fit_baseline
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+
+EFFECT = "speed_loss_in_turn"  # a surge force in proportion to sway speed times yaw rate
+PROGRAM = Program(BOAT, candidate_library(BOAT).compiled_effects)
+
+
+def with_unknown_moment(t: float, y: Array, command: Array) -> Array:
+    """The loss of speed, and a moment that depends on the heading, which no candidate gives."""
+    v, r = y[4:6]
+    return np.array([10.0 * v * r, 0.0, 0.05 * np.cos(2.0 * y[2])])
+
+
+@pytest.fixture(scope="module")
+def fitted() -> tuple[Problem, Fit, Fit]:
+    """The problem, its fit without the effect, and with it."""
+    recordings = [sail("a", 1, with_unknown_moment)[0], sail("b", 2, with_unknown_moment)[0]]
+    problem = Problem(
+        [map_recording(recording, PROGRAM) for recording in recordings],
+        prior_noise_levels(BOAT, recordings),
+        {"damping": 0.05, "thrust": 0.05},
+    )
+    _, without = fit_baseline(problem)
+    free = problem.free_parameters((EFFECT,))
+    start = unfitted_hypothesis((EFFECT,), free, prior_arrays(free).mean, without.levels)
+    return problem, without, converge(problem, start)
+
+
+def test_an_effect_acts_along_the_axes_of_its_force(fitted: tuple[Problem, Fit, Fit]) -> None:
+    problem, _, best = fitted
+    assert effect_axes(problem, best, EFFECT) == ("surge",)
+
+
+def test_an_error_of_an_instrument_counts_on_all_axes(fitted: tuple[Problem, Fit, Fit]) -> None:
+    problem, without, _ = fitted
+    free = problem.free_parameters(("heading_offset",))
+    sensor = unfitted_hypothesis(
+        ("heading_offset",), free, prior_arrays(free).mean + prior_arrays(free).sd, without.levels
+    )
+    assert effect_axes(problem, sensor, "heading_offset") == ("surge", "sway", "yaw")
+
+
+def test_a_mass_counts_on_all_axes_because_it_acts_with_the_acceleration(
+    fitted: tuple[Problem, Fit, Fit],
+) -> None:
+    problem, without, _ = fitted
+    free = problem.free_parameters(("extra_mass",))
+    more = unfitted_hypothesis(
+        ("extra_mass",), free, prior_arrays(free).mean + prior_arrays(free).sd, without.levels
+    )
+    assert effect_axes(problem, more, "extra_mass") == ("surge", "sway", "yaw")
+
+
+def test_what_remains_in_yaw_is_no_sign_against_an_effect_in_surge(
+    fitted: tuple[Problem, Fit, Fit],
+) -> None:
+    problem, without, best = fitted
+    remaining = find_structure(problem, best, best.levels)
+    assert remaining.axis == "yaw" and "heading" in remaining.goes_with
+    signs = effect_consistency(problem, best, {EFFECT: without}, [])[EFFECT]
+    assert signs.structure_gain == remaining.gain_along(["surge"]) < 0.3 * remaining.gain
+    assert signs.unexplained_gain < 1.0
