@@ -2,10 +2,16 @@
 
 import ast
 import hashlib
+import re
+import textwrap
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
+# What may be an import statement: only these lines are parsed, which is ten times faster than to
+# parse the files
+IMPORT = re.compile(r"^[ \t]*(?:from[ \t]+\S+[ \t]+)?import[ \t]+(?:\([^)]*\)|.*)", re.MULTILINE)
 
 
 @cache
@@ -52,7 +58,7 @@ def imported_files(path: Path) -> frozenset[Path]:
 def _imports(path: Path) -> frozenset[Path]:
     """Files of boatsim that a file imports."""
     found = set()
-    for node in ast.walk(ast.parse(file_content(path))):
+    for node in _import_statements(file_content(path).decode("utf-8")):
         names = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -66,6 +72,15 @@ def _imports(path: Path) -> frozenset[Path]:
             if name.partition(".")[0] == "boatsim" and (file := _file_of(name)) is not None:
                 found.add(file)
     return frozenset(found)
+
+
+def _import_statements(text: str) -> Iterator[ast.stmt]:
+    """Yield the import statements of a Python file; text that looks like one is skipped."""
+    for found in IMPORT.finditer(text):
+        try:
+            yield from ast.parse(textwrap.dedent(found.group())).body
+        except SyntaxError:  # a line of a text
+            continue
 
 
 def _package(path: Path, level: int) -> tuple[str, ...]:

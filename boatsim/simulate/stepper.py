@@ -67,6 +67,7 @@ class Stepper(ABC):
         self._commands = np.zeros(len(vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.actuator_signal_size)
+        self._state_of_force = np.zeros(2 * self.code.NQ)
         self._actuators = vessel.actuators
         # mean of each actuator over the last step
         self._mean = np.zeros(len(self._actuators))
@@ -241,8 +242,17 @@ class Stepper(ABC):
 
         Degrees of freedom that the vessel lacks have 0.
         """
+        self._state_of_force[:] = self._joint_state()
+        return Wrench(**dict(zip(self._axes_of_force, self._body_force(self.t), strict=True)))
+
+    @cached_property
+    def _axes_of_force(self) -> list[str]:
+        """Names of the force components that the vessel's degrees of freedom have."""
+        return [Wrench._fields[i] for i in self.code.FREE]
+
+    @cached_property
+    def _body_force(self) -> Callable[[float], tuple[float, ...]]:
+        """`total_body_force` of this vessel in the state `_state_of_force`, a function of time."""
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
-        found = self.code.total_body_force(
-            self.t, self._joint_state(), self._act, last, self._values, self._on
-        )
-        return Wrench(**dict(zip((Wrench._fields[i] for i in self.code.FREE), found, strict=True)))
+        given = self._state_of_force, self._act, last, self._values, self._on
+        return partial_call(self.code, "total_body_force", ..., *given)
