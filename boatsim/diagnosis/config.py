@@ -1528,7 +1528,7 @@ class DecideConfig:
     """
 
     least_probability: float = setting(
-        0.4,
+        0.45,
         "1",
         "Probability, together with look-alikes, from which an effect is named; below it an effect "
         "is only reported as possible. It is a little below one half, because a true effect that "
@@ -1635,33 +1635,33 @@ class DecideConfig:
         0.0,
     )
     intercept: float = setting(
-        3.1,
+        3.42,
         "1",
         "Log of the odds of a name whose features are all zero.",
         low=-inf,
     )
     held_out_gain: float = setting(
-        0.228,
+        0.231,
         "1",
         "Weight: log of the log-likelihood [nats] that held-out recordings gain by the effect.",
         low=-inf,
     )
     held_out_significance: float = setting(
-        0.0796,
+        0.0797,
         "1",
         "Weight: size on held-out recordings in its standard deviations: a true effect is found"
         " again.",
         low=-inf,
     )
     held_out_deviation: float = setting(
-        -0.415,
+        -0.412,
         "1",
         "Weight: deviation of the size on held-out recordings from the fitted size, in standard"
         " deviations with 10 % error of the law.",
         low=-inf,
     )
     times_apart: float = setting(
-        -0.862,
+        -0.851,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
         low=-inf,
@@ -1674,14 +1674,14 @@ class DecideConfig:
         low=-inf,
     )
     unexplained: float = setting(
-        -0.956,
+        -1,
         "1",
         "Weight: evidence that remains unexplained along the axes of the effect, as a share of its "
         "own evidence.",
         low=-inf,
     )
     structure: float = setting(
-        -2,
+        -2.19,
         "1",
         "Weight: dependence of the force that remains along the axes of the effect on motion, "
         "commands, place or time, as a share of all gained evidence. The level of that force is "
@@ -1689,14 +1689,14 @@ class DecideConfig:
         low=-inf,
     )
     alternative: float = setting(
-        -1.03,
+        -1.28,
         "1",
         "Weight: evidence of the best single-term force along the axes of the effect in its place, "
         "as a share of its own evidence.",
         low=-inf,
     )
     prior_distance: float = setting(
-        -1.44,
+        -1.43,
         "1",
         "Weight: log of the distance from zero effect in prior standard deviations: an "
         "implausible size.",
@@ -1722,20 +1722,20 @@ class DecideConfig:
         low=-inf,
     )
     look_alikes: float = setting(
-        0.648,
+        0.647,
         "1",
         "Weight: number of its look-alikes, each of which may be the true cause.",
         low=-inf,
     )
     coefficient_shift: float = setting(
-        -0.485,
+        -0.48,
         "1",
         "Weight: rms distance of the refitted coefficients from the vessel file in prior "
         "standard deviations.",
         low=-inf,
     )
     effects: float = setting(
-        -1.67,
+        -1.68,
         "1",
         "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,

@@ -155,7 +155,7 @@ def _law_program(name: str, case: Case) -> str:
             "    effect = kind(**given)",
         ]
     lines += [
-        f"motion = base.motion({moves})",
+        f"motion = base.make_motion({moves})",
         *header,
         *_call_lines("    wrench = type(effect).law", arguments),
         '    print(f"{label}: X = {wrench.X:.4g} N, Y = {wrench.Y:.4g} N, N = {wrench.N:.4g} N m")',

@@ -19,14 +19,14 @@ def sample(count: int) -> tuple[np.ndarray, np.ndarray]:
 def test_many_names_give_the_true_weights_whatever_the_prior() -> None:
     X, right = sample(40_000)
     for mean in (np.zeros(3), -TRUE):
-        intercept, weights = fit_weights(X, right, WeightPrior(mean, np.full(3, 0.3)))
+        intercept, weights = fit_weights(X, right, WeightPrior(INTERCEPT, mean, np.full(3, 0.3)))
         assert weights == pytest.approx(TRUE, abs=0.1)
         assert intercept == pytest.approx(INTERCEPT, abs=0.05)
 
 
 def test_few_names_leave_the_weights_in_use() -> None:
     X, right = sample(3)
-    _, weights = fit_weights(X, right, WeightPrior(TRUE, np.full(3, 0.02)))
+    _, weights = fit_weights(X, right, WeightPrior(INTERCEPT, TRUE, np.full(3, 0.02)))
     assert weights == pytest.approx(TRUE, abs=0.02)
 
 
@@ -44,7 +44,7 @@ def test_the_cross_validated_probability_of_a_trial_does_not_use_that_trial() ->
     X, right = sample(200)
     trials = np.arange(200)
     changed = np.where(trials % 10 == 3, 1.0 - right, right)
-    prior = WeightPrior(TRUE, np.full(3, 0.3))
+    prior = WeightPrior(INTERCEPT, TRUE, np.full(3, 0.3))
     before = cross_validated(X, right, trials, prior)
     after = cross_validated(X, changed, trials, prior)
     own = trials % 10 == 3

@@ -81,10 +81,11 @@ def consistency(entry: dict[str, Any]) -> Consistency:
 
 
 class WeightPrior(NamedTuple):
-    """Normal prior of the weights (F,): mean, and sd per standard deviation of the feature."""
+    """Normal prior of a regression: means, and sds of the weights per sd of their features."""
 
-    mean: Array
-    sd: Array
+    intercept: float
+    mean: Array  # (F,) of the weights
+    sd: Array  # (F,)
 
 
 def weight_prior(names: Sequence[str], new: Collection[str]) -> WeightPrior:
@@ -95,7 +96,8 @@ def weight_prior(names: Sequence[str], new: Collection[str]) -> WeightPrior:
         new: Those that are new or defined anew.
     """
     mean = np.array([getattr(DEFAULT.decide, name) for name in names])
-    return WeightPrior(mean, np.where(np.isin(names, list(new)), NEW_WEIGHT_SD, WEIGHT_SD))
+    sd = np.where(np.isin(names, list(new)), NEW_WEIGHT_SD, WEIGHT_SD)
+    return WeightPrior(DEFAULT.decide.intercept, mean, sd)
 
 
 def fit_weights(X: Array, right: Array, prior: WeightPrior) -> tuple[float, Array]:
@@ -104,25 +106,22 @@ def fit_weights(X: Array, right: Array, prior: WeightPrior) -> tuple[float, Arra
     Args:
         X: Features (N, F).
         right: Outcomes (N,), 0 or 1.
-        prior: Prior of the weights; the intercept is free.
+        prior: Prior of the weights; that of the intercept has the sd of weights in use.
     """
-    mean, sd = X.mean(axis=0), X.std(axis=0)
+    sd = X.std(axis=0)
     sd[sd == 0.0] = 1.0
-    centre = prior.mean * sd
-    Z = np.column_stack([np.ones(len(X)), (X - mean) / sd])
+    centre = np.append(prior.intercept, prior.mean * sd)
+    spread = np.append(WEIGHT_SD, prior.sd)
+    Z = np.column_stack([np.ones(len(X)), X / sd])
 
     def loss(w: Array) -> tuple[float, Array]:
         odds = Z @ w
-        value = np.logaddexp(0.0, odds) - right * odds
-        change = (w[1:] - centre) / prior.sd
-        penalty = 0.5 * np.sum(change**2)
-        slope = Z.T @ (expit(odds) - right)
-        slope[1:] += change / prior.sd
-        return float(value.sum() + penalty), slope
+        change = (w - centre) / spread
+        value = np.sum(np.logaddexp(0.0, odds) - right * odds) + 0.5 * np.sum(change**2)
+        return float(value), Z.T @ (expit(odds) - right) + change / spread
 
-    w = minimize(loss, np.zeros(Z.shape[1]), jac=True, method="L-BFGS-B").x
-    weights = w[1:] / sd
-    return float(w[0] - weights @ mean), weights
+    w = minimize(loss, centre, jac=True, method="L-BFGS-B", options={"maxiter": 10_000}).x
+    return float(w[0]), w[1:] / sd
 
 
 def cross_validated(X: Array, right: Array, trials: Array, prior: WeightPrior) -> Array:
