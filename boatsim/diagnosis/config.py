@@ -1521,10 +1521,10 @@ class DecideConfig:
     The regression is one of right and wrong effects, over about 1,080 simulated logs with known
     causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
     logs were being chosen. The two weights of a stochastic force were fitted again to about 650
-    logs of the seeds 4 to 6, those of `unexplained`, `structure` and `alternative` to 322 logs of
-    seed 9, when these signs were related to the axes of an effect. `python -m
-    validation.calibration --weights` fits weights to the logs that it has diagnosed. Each
-    multiplies a feature of `boatsim.diagnosis.open_set.probability`.
+    logs of the seeds 4 to 6, those of `unexplained`, `structure` and `alternative` to the 306 logs
+    with a cause among the first 419 of seed 9, when these signs were related to the axes of an
+    effect. `python -m validation.calibration --weights` fits weights to the logs that it has
+    diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
