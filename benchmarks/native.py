@@ -51,7 +51,7 @@ def measure_filter(vessel: Vessel) -> tuple[float, float]:
     mapped = map_recording(recording, program)
     problem = Problem([mapped], prior_noise_levels(vessel, [recording]), {})
     hypothesis = problem.nominal_hypothesis()
-    values = problem.values(mapped, hypothesis.free, hypothesis.theta)
+    values = problem.parameter_vector(mapped, hypothesis.free, hypothesis.theta)
     on = program.effect_switches(program.candidate_names)
     mapped.smooth(values, on, problem.ambient)
     first, begin = cpu_s() - begin, process_time()

@@ -37,7 +37,7 @@ class Divergence:
     unit: str
 
 
-def has_diverged(problem: Problem, fit: Fit) -> bool:
+def cannot_follow_recordings(problem: Problem, fit: Fit) -> bool:
     """Return whether a fitted vessel model cannot follow the recordings it was fitted to.
 
     Also true if its evidence or covariance is not finite.

@@ -15,9 +15,9 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.diagnosis.input_noise import (
-    axes_with_measured_force,
     input_noise_density,
     interpolate_measured_inputs,
+    measured_force_mask,
     measured_input_indices,
 )
 from boatsim.diagnosis.recent_results import RecentResults
@@ -1000,7 +1000,7 @@ def prior_noise_levels(
         )
     noise = shared_noise(vessel, recordings, config)
     white = np.zeros(0)
-    if axes_with_measured_force(vessel, axes).any():
+    if measured_force_mask(vessel, axes).any():
         share = config.load.input_noise_time * time_constant
-        white = np.where(axes_with_measured_force(vessel, axes), share * force**2, 0.0)
+        white = np.where(measured_force_mask(vessel, axes), share * force**2, 0.0)
     return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force, white)

@@ -81,7 +81,7 @@ def free_runs(
     for mapped in recordings:
         runs = {}
         for name, fit in fits.items():
-            values = problem.values(mapped, fit.free, fit.theta)
+            values = problem.parameter_vector(mapped, fit.free, fit.theta)
             on = problem.program.effect_switches(fit.effects)
             runs[name] = mapped.free_runs(values, on, fit.levels, horizon)
         for i, (begin, end) in enumerate(

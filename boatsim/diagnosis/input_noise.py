@@ -66,8 +66,8 @@ def interpolate_measured_inputs(inputs: Array, places: Sequence[int]) -> Array:
     return found
 
 
-def axes_with_measured_force(vessel: Vessel, axes: Sequence[str]) -> NDArray[np.bool_]:
-    """Return along which axes a measured force acts, as an array (axes,).
+def measured_force_mask(vessel: Vessel, axes: Sequence[str]) -> NDArray[np.bool_]:
+    """Return a boolean mask (axes,): along which axes a measured force acts.
 
     Args:
         vessel: The vessel.

@@ -25,7 +25,7 @@ from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, recordi
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
 from boatsim.diagnosis.covariance_inflation import inflate_covariance
-from boatsim.diagnosis.divergence import has_diverged
+from boatsim.diagnosis.divergence import cannot_follow_recordings
 from boatsim.diagnosis.evaluation import Evaluation, compare_models
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
@@ -204,7 +204,7 @@ def _fit_and_select(
 ) -> Diagnosis | None:
     """Run all stages after the checks; None if the vessel's own fit does not follow."""
     base = fit_baseline_models(question)
-    if has_diverged(question.problem, base.recalibrated):
+    if cannot_follow_recordings(question.problem, base.recalibrated):
         return None
     findings = (*findings, *find_ignored_commands(loaded, question, base))
     selection = select_candidates(question, base, loaded, report_part_of(report, *SELECTING))

@@ -388,8 +388,10 @@ class Problem:
             )
         return free
 
-    def values(self, mapped: MappedRecording, free: Sequence[FreeParameter], theta: Array) -> Array:
-        """Return the parameter values of the vessel model for a recording, given free parameters.
+    def parameter_vector(
+        self, mapped: MappedRecording, free: Sequence[FreeParameter], theta: Array
+    ) -> Array:
+        """Return all parameter values of the vessel program for a recording, given free parameters.
 
         Args:
             mapped: The mapped recording, with its nominal parameter values.
@@ -457,7 +459,9 @@ class Problem:
         found = []
         for mapped, one in zip(self.recordings, before, strict=True):
             acting = self._switches(mapped, free, on)
-            found.append(mapped.filter(self.values(mapped, free, theta), acting, levels, one))
+            found.append(
+                mapped.filter(self.parameter_vector(mapped, free, theta), acting, levels, one)
+            )
         return FilterPasses(tuple(found))
 
     def log_likelihood(
@@ -475,7 +479,7 @@ class Problem:
         before = about.passes if about else [None] * len(self.recordings)
         found = 0.0
         for mapped, one in zip(self.recordings, before, strict=True):
-            values = self.values(mapped, free, theta)
+            values = self.parameter_vector(mapped, free, theta)
             acting = self._switches(mapped, free, on)
             found += mapped.log_likelihood(values, acting, levels, one)
         return found
@@ -519,7 +523,10 @@ class Problem:
         """
         found = []
         for mapped, one in zip(self.recordings, about.passes, strict=True):
-            values, acting = self.values(mapped, free, theta), self._switches(mapped, free, on)
+            values, acting = (
+                self.parameter_vector(mapped, free, theta),
+                self._switches(mapped, free, on),
+            )
             found.append(mapped.whitened_errors(values, acting, levels, one))
         return np.concatenate(found)
 
@@ -550,7 +557,10 @@ class Problem:
         """
         found, total = [], 0.0
         for mapped, one in zip(self.recordings, about.passes, strict=True):
-            values, acting = self.values(mapped, free, theta), self._switches(mapped, free, on)
+            values, acting = (
+                self.parameter_vector(mapped, free, theta),
+                self._switches(mapped, free, on),
+            )
             errors = mapped.whitened_errors(values, acting, levels, one)
             total += float(errors @ errors)
             if not total <= most:

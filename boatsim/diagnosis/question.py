@@ -136,7 +136,7 @@ def compile_program(problem: Problem) -> None:
     """
     nominal, on = problem.nominal_hypothesis(), problem.program.effect_switches()
     mapped = problem.recordings[0]
-    values = problem.values(mapped, nominal.free, nominal.theta)
+    values = problem.parameter_vector(mapped, nominal.free, nominal.theta)
     mapped.free_runs(values, on, problem.ambient, float(np.ptp(mapped.times)))
     rest = np.zeros((1, 2 * problem.program.module.NQ))
     held = nominal_forces.actuator_states(mapped)[:1]

@@ -107,9 +107,9 @@ class Session:
         return self.server.ended or self.server.is_abandoned
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """Return the controller's goals at a time, from the driver's sticks.
+        """Advance the controller's goals by the driver's sticks up to a time, and return them.
 
-        A repeated call returns the same goals.
+        A time that is not after the last one returns the same goals.
 
         Args:
             t: Simulated time [s].

@@ -136,7 +136,7 @@ def _turning_sense(vessel: Vessel, actuator: str) -> float:
     if turns:
         return 1.0 if turns == "starboard" else -1.0
     for effect in vessel.effects:
-        if actuator in vessel.specified_bindings(effect).values():
+        if actuator in vessel.specified_inputs(effect).values():
             astern_of_origin = float(getattr(effect, "x", 1.0)) < 0.0
             return -1.0 if astern_of_origin else 1.0
     return 1.0

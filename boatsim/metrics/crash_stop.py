@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import MetricSet, path_length, value_at
+from boatsim.simulate.metric import MetricSet, distance_travelled, value_at
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class CrashStop(MetricSet):
         dx, dy = (
             value_at(log, end, name) - value_at(log, self.execute, name) for name in ("x_m", "y_m")
         )
-        travelled = np.interp([self.execute, end], log.t, path_length(log))
+        travelled = np.interp([self.execute, end], log.t, distance_travelled(log))
         return {
             "track_reach": float(travelled[1] - travelled[0]) / self.length,
             "head_reach": float(np.cos(psi0) * dx + np.sin(psi0) * dy) / self.length,

@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.metric import MetricSet, path_length, rows_between
+from boatsim.simulate.metric import MetricSet, distance_travelled, rows_between
 
 COUNT = ("first", "second", "third")
 
@@ -57,7 +57,7 @@ class Zigzag(MetricSet):
         # rows between which the reversal heading was reached
         last = slice(reversals[0] - 1, reversals[0] + 1)
         reached = float(np.interp(self.heading, np.sign(helm[last][0]) * psi[last], log.t[last]))
-        travelled = np.interp([self.execute, reached], log.t, path_length(log))
+        travelled = np.interp([self.execute, reached], log.t, distance_travelled(log))
         found = {
             "time_to_reversal": reached - self.execute,
             "track_to_reversal": float(travelled[1] - travelled[0]) / self.length,

@@ -153,6 +153,6 @@ def value_at(log: Recording, time: float, name: str) -> float:
     return float(np.interp(time, log.t, log[name]))
 
 
-def path_length(log: Recording) -> Array:
-    """Return the distance travelled along the path up to each row of a log, (N,) [m]."""
+def distance_travelled(log: Recording) -> Array:
+    """Return the distance along the boat's own horizontal track to each row, (N,) [m]."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(log["x_m"]), np.diff(log["y_m"])))])

@@ -139,7 +139,7 @@ class RunLog:
             # interpreted: a single call is not worth compiling
             law = python_function(type(effect).law)
             values: dict[str, float] = {}
-            for role, channel in self.scenario.vessel.specified_bindings(effect).items():
+            for role, channel in self.scenario.vessel.specified_inputs(effect).items():
                 values[role] = self._measured[channel] if isinstance(channel, str) else channel
             signals = (type(effect).signals(**values),) if type(effect).roles else ()
             wrench = law(make_motion(**state._asdict()), effect.values(), *signals)

@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.files import replace_file
 from boatsim.sweeps.keys import Value
-from boatsim.sweeps.plots import controller_legend, group_by_controller, plot_metric
+from boatsim.sweeps.plots import controller_legend, group_by_controller, metric_plots
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sentence import Picture, headline_figure, result_sentence, varied_keys_sentence
 from boatsim.sweeps.text_tables import blank_repeats, format_values, result_tables
@@ -120,7 +120,7 @@ def _plot_sections(results: Results, picture: Picture | None) -> list[Section]:
         legend = controller_legend(group_by_controller(results, rows))
         plots = {}
         for metric in results.displayed_metrics:
-            drawn = [plot for plot in plot_metric(results, metric, rows) if plot != first]
+            drawn = [plot for plot in metric_plots(results, metric, rows) if plot != first]
             if drawn:
                 plots[metric] = drawn
         section.blocks.extend(_plot_blocks(legend, plots))

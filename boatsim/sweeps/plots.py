@@ -79,7 +79,7 @@ def controller_legend(found: Sequence[Group]) -> str:
     return legend({group.style: group.name for group in found})
 
 
-def plot_metric(results: Results, name: str, rows: Array) -> list[str]:
+def metric_plots(results: Results, name: str, rows: Array) -> list[str]:
     """Return plots of a metric of a sweep against axes and the most correlated sampled quantities.
 
     Args:

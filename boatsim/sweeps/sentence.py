@@ -10,7 +10,7 @@ from boatsim.sweeps.axes import Axis
 from boatsim.sweeps.plots import (
     controller_legend,
     group_by_controller,
-    plot_metric,
+    metric_plots,
     rank_correlations,
 )
 from boatsim.sweeps.results import Results
@@ -166,7 +166,7 @@ def headline_figure(results: Results) -> Picture | None:
     scenario = results.plan.scenarios[0]
     names = np.array([results.plan.points[number].scenario for number in results.point_numbers])
     rows = names == scenario
-    plots = plot_metric(results, metric, rows)
+    plots = metric_plots(results, metric, rows)
     if not plots:
         return None
     return Picture(controller_legend(group_by_controller(results, rows)), plots[0])

@@ -94,7 +94,10 @@ class ThinnedLog:
         self._size *= 2
 
     def samples(self) -> Samples | None:
-        """Return the samples of the log so far; None for a log without rows."""
+        """Return the thinned log so far; None without rows.
+
+        It has the first, the lowest and the highest value of each signal in each bucket of rows.
+        """
         if not self._rows:
             return None
         parts = list(self._buckets)

@@ -75,7 +75,7 @@ def test_a_weaker_thrust_is_found_in_the_group_that_has_it_with_its_size():
     assert not ranking.named[0].tied_with
     gain = problem.program.parameter_index("port", "gain")
     for mapped in problem.recordings:
-        values = problem.values(mapped, ranking.best.free, ranking.best.theta)
+        values = problem.parameter_vector(mapped, ranking.best.free, ranking.best.theta)
         assert values[gain] == pytest.approx(WEAK if "yellow" in mapped.groups else 1.0, abs=0.05)
 
 

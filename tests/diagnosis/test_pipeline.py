@@ -329,7 +329,7 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     fitted, own = map_recording(rec, found.problem.program), map_recording(rec, Program(again))
     best = found.ranking.best
     first = fitted.free_runs(
-        found.problem.values(fitted, best.free, best.theta),
+        found.problem.parameter_vector(fitted, best.free, best.theta),
         fitted.program.effect_switches(best.effects),
         best.levels,
         6.0,

@@ -45,7 +45,7 @@ def yaw_rate_error(found: Diagnosis, seed: int, real: Real, patched: bool) -> fl
     """Rms yaw rate error [deg/s] of one free run over a whole recording."""
     laid = map_recording(recorded(real, seed), found.problem.program)
     fit = found.ranking.best if patched else found.ranking.nominal
-    values = found.problem.values(laid, fit.free, fit.theta)
+    values = found.problem.parameter_vector(laid, fit.free, fit.theta)
     on = found.problem.program.effect_switches(fit.effects)
     ((_, run),) = laid.free_runs(values, on, fit.levels, float(np.ptp(laid.times)))
     column = laid.signals.index("r_radps")

@@ -271,7 +271,7 @@ class Weather:
         part = self._without_wind()
         fixed_ship = []
         for run in recordings:
-            values = self.problem.values(run, part.free, part.theta)
+            values = self.problem.parameter_vector(run, part.free, part.theta)
             fixed_ship.append(replace(run, values=values))
         on = self.problem.program.effect_switches(self.ship.effects)
 

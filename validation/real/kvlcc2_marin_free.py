@@ -40,7 +40,7 @@ def turn_errors(diagnosis: Diagnosis, model: Fit, circle: MappedRecording) -> Ar
     """Return the rms errors of speed [m/s] and yaw rate [deg/s] over one free run of the circle."""
     problem = diagnosis.problem
     on = problem.program.effect_switches(model.effects)
-    values = problem.values(circle, model.free, model.theta)
+    values = problem.parameter_vector(circle, model.free, model.theta)
     first, states = circle.free_runs(values, on, model.levels, DURATION)[0]
     columns = [circle.signals.index("u_mps"), circle.signals.index("r_radps")]
     off = states[:, [3, 5]] - circle.measured[first : first + len(states)][:, columns]

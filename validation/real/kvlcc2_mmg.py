@@ -104,7 +104,7 @@ def overshoots_by_model(diagnosis: Diagnosis, run: Recording) -> list[list[float
     heading = int(mapped.codes[mapped.signals.index("psi_rad")])
     duration = float(mapped.times[rows - 1] - mapped.times[0])
     for fit in compared_fits(diagnosis.ranking).values():
-        values = problem.values(mapped, fit.free, fit.theta)
+        values = problem.parameter_vector(mapped, fit.free, fit.theta)
         on = problem.program.effect_switches(fit.effects)
         first, states = mapped.free_runs(values, on, fit.levels, duration)[0]
         found.append(overshoots(states[:, heading], delta[first:], (np.array(at) - first).tolist()))

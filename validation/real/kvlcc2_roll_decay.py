@@ -126,7 +126,7 @@ def fit_one_effect_at_a_time(diagnosis: Diagnosis) -> dict[str, Fit]:
 
 def simulate(problem: Problem, mapped: MappedRecording, model: Fit) -> Array:
     """Return the states (N, 2 dof) of one free run over a whole recording."""
-    values = problem.values(mapped, model.free, model.theta)
+    values = problem.parameter_vector(mapped, model.free, model.theta)
     on = problem.program.effect_switches(model.effects)
     ((_, states),) = mapped.free_runs(values, on, model.levels, float(np.ptp(mapped.times)))
     return np.asarray(states)
@@ -151,7 +151,7 @@ def envelope_and_phase_of_runs(
     """Return envelope and phase (2, N) of the smoothed recording and of one free run per model."""
     omega = natural_frequency(mapped)
     last = list(fits.values())[-1]
-    values = problem.values(mapped, last.free, last.theta)
+    values = problem.parameter_vector(mapped, last.free, last.theta)
     smooth = mapped.smooth(values, problem.program.effect_switches(last.effects), last.levels)[0]
     found = {"recorded": envelope_and_phase(smooth, omega)}
     for label, model in fits.items():

@@ -166,7 +166,7 @@ class LeastSquares:
         errors = tuple(
             e
             for run, s in zip(self.runs, begun, strict=True)
-            for e in run.errors(self.problem.values(run.track, free, theta), on, s)
+            for e in run.errors(self.problem.parameter_vector(run.track, free, theta), on, s)
         )
         with np.errstate(over="ignore", invalid="ignore"):
             square = sum(float(np.nansum((e * weights) ** 2)) for e in errors)
@@ -232,7 +232,9 @@ class LeastSquares:
         errors = iter(state.errors)
         for run, s in zip(self.runs, state.starts, strict=True):
             own = [next(errors) for _ in s]
-            slopes += run.by_starts(self.problem.values(run.track, free, state.theta), on, s, own)
+            slopes += run.by_starts(
+                self.problem.parameter_vector(run.track, free, state.theta), on, s, own
+            )
         linear = LinearisedErrors.of(state.errors, state.weights, slopes)
         return linear.with_columns(
             [self.derivative_by_parameter(state, linear, j) for j in range(len(free))],

@@ -272,7 +272,7 @@ class MujocoSysid:
     ) -> list[Array]:
         """Return recorded minus simulated (M, C) of each window."""
         free = free_parameters(self.question, effects)
-        values = self.problem.values(run.track, free, theta)
+        values = self.problem.parameter_vector(run.track, free, theta)
         begun = np.asarray(starts).reshape(len(run.begins), -1)
         return run.errors(values, self.problem.program.effect_switches(effects), begun)
 

@@ -76,7 +76,7 @@ class ResidualColumns:
         found = []
         for smoother, recorded in zip(self.smoothers, self.recorded, strict=True):
             track = smoother.track
-            values = self.problem.values(track, free, theta)
+            values = self.problem.parameter_vector(track, free, theta)
             states, _ = smoother.motion(true_positions(track, recorded, values, on))
             held = mean_actuators(track, effects, values)
             predicted = predicted_accelerations(track, states, held, values, on)

@@ -69,7 +69,7 @@ class Simulator:
         found = []
         for one in self.recorded:
             track = one.run.track
-            values = self.problem.values(track, free, hypothesis.theta)
+            values = self.problem.parameter_vector(track, free, hypothesis.theta)
             starts = one.starts + one.start_sd * rng.standard_normal(one.starts.shape)
             deviations = -np.vstack(one.run.errors(values, on, starts))
             averages = average_parts(one.averaging, deviations)

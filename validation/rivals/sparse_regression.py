@@ -105,7 +105,7 @@ class SparseRegression:
         kinds = [self.entries[n] for n in effects]
         for smoother, recorded, held in zip(self.smoothers, self.recorded, self.held, strict=True):
             track = smoother.track
-            values = self.problem.values(track, free, theta)
+            values = self.problem.parameter_vector(track, free, theta)
             if any(isinstance(e, Measurement) for e in kinds):
                 true = true_positions(track, recorded, values, on)
             else:

@@ -28,7 +28,7 @@ from boatsim.diagnosis.checks.reinterpretations import (
     heading_offset_hypothesis,
     reinterpretations,
 )
-from boatsim.diagnosis.checks.steering_sense import reversed_commands
+from boatsim.diagnosis.checks.steering_sense import commands_with_corrected_sign
 from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate import nominal_forces
@@ -201,7 +201,9 @@ def _shortened(
 
 def _with_recorded_rudder(recording: Recording) -> Recording:
     """The recording with the rudder signs of its file."""
-    return apply_corrections(recording, scaling_corrections(reversed_commands(recording), -1.0))
+    return apply_corrections(
+        recording, scaling_corrections(commands_with_corrected_sign(recording), -1.0)
+    )
 
 
 def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:

@@ -115,7 +115,7 @@ def _response(problem: Problem, fit: Fit, mapped: MappedRecording, scale: Array)
     The motion needs the commanded force and the latent one that the filter adds.
     """
     nq, axes = problem.program.module.NQ, _axes(mapped)
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     on = problem.program.effect_switches(fit.effects)
     means = mapped.smooth(values, on, fit.levels).means
     commanded = _commanded(mapped)[:, axes] / scale

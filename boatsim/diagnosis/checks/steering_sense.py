@@ -45,7 +45,7 @@ def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksCon
     return recording
 
 
-def reversed_commands(recording: Recording) -> list[str]:
+def commands_with_corrected_sign(recording: Recording) -> list[str]:
     """Return the rudder commands whose sign was corrected automatically in a recording.
 
     They are read from the remarks of the recording.

@@ -77,7 +77,7 @@ def find_pushes(
 def _latent_force(problem: Problem, fit: Fit, mapped: MappedRecording) -> Array:
     """Smoothed force (N, NQ) that a fitted vessel leaves unexplained."""
     nq = problem.program.module.NQ
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     on = problem.program.effect_switches(fit.effects)
     return mapped.smooth(values, on, fit.levels).means[:, 2 * nq : 3 * nq]
 

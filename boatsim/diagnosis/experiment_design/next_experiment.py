@@ -324,7 +324,9 @@ def _refit(
     high = np.array(list(map(attrgetter("high"), model.free)))
 
     def parameter_values(xi: Array) -> Array:
-        return problem.values(recording, model.free, np.clip(model.theta + root @ xi, low, high))
+        return problem.parameter_vector(
+            recording, model.free, np.clip(model.theta + root @ xi, low, high)
+        )
 
     def log_posterior(xi: Array) -> tuple[float, FilterPass]:
         passed = recording.filter(parameter_values(xi), on, best.levels)

@@ -118,7 +118,7 @@ def _as_recording(
 
 def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: Array) -> Array:
     """Channels (N, 2 NQ) of a free run as a recording has them, without the latent force."""
-    values = problem.values(problem.recordings[0], fit.free, fit.theta)
+    values = problem.parameter_vector(problem.recordings[0], fit.free, fit.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.estimation_functions.simulate_intervals(
         Inputs(times, times, commands),
@@ -185,7 +185,7 @@ def _start(problem: Problem, fit: Fit, manoeuvre: Manoeuvre) -> Array:
         if code < nq and axes[code] in ("surge", "sway"):
             state[code] = round(float(np.nanmean(first.measured[:, channel])), 2)
     if manoeuvre.under_way:
-        values = problem.values(first, fit.free, fit.theta)
+        values = problem.parameter_vector(first, fit.free, fit.theta)
         on = problem.program.effect_switches(fit.effects)
         states = first.smooth(values, on, fit.levels).means
         state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")

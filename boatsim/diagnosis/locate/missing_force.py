@@ -118,7 +118,7 @@ def _mean_average(
     """Averages (N, axes) of the smoothed latent force without their variance, which costs more."""
     nq = problem.program.module.NQ
     on = problem.program.effect_switches(fit.effects)
-    means = mapped.smooth(problem.values(mapped, fit.free, theta), on, levels).means
+    means = mapped.smooth(problem.parameter_vector(mapped, fit.free, theta), on, levels).means
     rows = averaging_window_length(mapped.times, problem.ambient.time_constant)
     return running_average(means[:, 2 * nq : 3 * nq], rows)
 

@@ -125,10 +125,10 @@ def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, stat
     held = actuator_states(mapped)
     ones = np.ones(len(fit.free))
     states = np.ascontiguousarray(states)
-    base = body_forces(mapped, states, held, problem.values(mapped, fit.free, ones))
+    base = body_forces(mapped, states, held, problem.parameter_vector(mapped, fit.free, ones))
     parts = np.empty((len(ones), *base.shape))
     for j, unit in enumerate(np.eye(len(ones))):
-        doubled = problem.values(mapped, fit.free, ones + unit)
+        doubled = problem.parameter_vector(mapped, fit.free, ones + unit)
         parts[j] = body_forces(mapped, states, held, doubled) - base
     return parts
 
@@ -152,7 +152,7 @@ def force_sensitivities(
     """
     step = problem.config.fit.derivative_step
     states = np.ascontiguousarray(states)
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     held = actuator_states(mapped, fit.effects, values)
     base = body_forces(mapped, states, held, values, fit.effects)
     parts = np.empty((len(fit.free), *base.shape))
@@ -162,7 +162,7 @@ def force_sensitivities(
         if theta[j] + change > parameter.high:
             change = -change
         theta[j] += change
-        values = problem.values(mapped, fit.free, theta)
+        values = problem.parameter_vector(mapped, fit.free, theta)
         own = held
         if not parameter.relative:  # it may change an actuator
             own = actuator_states(mapped, fit.effects, values)

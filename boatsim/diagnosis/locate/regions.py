@@ -133,7 +133,7 @@ def _periodic_region(problem: Problem, fit: Fit, tests: int) -> list[Region]:
 
 def _whitened(problem: Problem, fit: Fit, mapped: MappedRecording) -> Array:
     """(N, C) whitened prediction errors."""
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     passed = mapped.filter(values, problem.program.effect_switches(fit.effects), fit.levels)
     return passed.whitened.reshape(len(mapped.times), -1)
 

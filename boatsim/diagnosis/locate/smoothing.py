@@ -56,7 +56,7 @@ def latent_force(
     """
     nq = problem.program.module.NQ
     on = problem.program.effect_switches(fit.effects)
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     means, covariances, gains = mapped.smooth(values, on, levels)
     rms, first_rms = mapped.latent_force_rms(values, on, levels)
     part = slice(2 * nq, 3 * nq)

@@ -49,7 +49,7 @@ def _changes_mass(effect: Effect) -> bool:
 def _force_of_effect(problem: Problem, fit: Fit, mapped: MappedRecording, name: str) -> Array:
     """(N, axes) force of an effect along the smoothed motion of a recording [N, N m]."""
     states = np.ascontiguousarray(latent_force(problem, fit, mapped, fit.levels).states)
-    values = problem.values(mapped, fit.free, fit.theta)
+    values = problem.parameter_vector(mapped, fit.free, fit.theta)
     others = tuple(effect for effect in fit.effects if effect != name)
     forces = []
     for effects in (fit.effects, others):

@@ -159,7 +159,7 @@ def _refined_numbers(problem: Problem, best: Fit, effect: Effect) -> list[_Numbe
 def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _Number:
     """The number that a parameter of an effect refines."""
     recording = problem.recordings[0]
-    after = problem.values(recording, best.free, best.theta)
+    after = problem.parameter_vector(recording, best.free, best.theta)
     value, _ = best.value(effect.name, name)
     sd = reported_sd(best, effect, name, problem.config.answer)
     param = type(effect).params()[name]
@@ -193,7 +193,7 @@ def _refined_coefficients(
     """
     vessel, config = problem.program.vessel, problem.config.answer
     recording = problem.recordings[0]
-    after = problem.values(recording, best.free, best.theta)
+    after = problem.parameter_vector(recording, best.free, best.theta)
     sds = np.sqrt(np.diag(best.covariance))
     for free, factor, sd in zip(best.free, best.theta, sds, strict=True):
         owners = vessel.names_of(free.effect)

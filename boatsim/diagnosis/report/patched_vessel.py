@@ -220,7 +220,7 @@ def _keep_fitted_defaults(
     document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, found: Fit
 ) -> None:
     """Write the numbers that default rules would now compute differently than in the fit."""
-    values = problem.values(problem.recordings[0], found.free, found.theta)
+    values = problem.parameter_vector(problem.recordings[0], found.free, found.theta)
     raw = document.unwrap()
     for name in vessel.load:
         raw = apply_load_values(raw, raw["loads"][name], name)

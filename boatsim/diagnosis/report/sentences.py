@@ -215,7 +215,9 @@ def _main_parameters(effect: EffectEntry) -> dict[str, ParameterEntry]:
 
 
 def held_out_only_statement(answer: Answer) -> str:
-    """Return the statement that only held-out recordings require a force; "" if that is not so.
+    """Return the statement that the cause is unknown only because of the held-out recordings.
+
+    They require a force that no candidate effect explains. Returns "" if that is not the reason.
 
     Args:
         answer: Content of diagnosis.json.

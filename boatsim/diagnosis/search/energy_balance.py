@@ -42,7 +42,7 @@ def _share_of_power(sets: CandidateSets, best: Fit) -> float:
     nq, swell = problem.program.module.NQ, problem.program.estimation_functions.oscillating_force
     power, largest = 0.0, 0.0
     for mapped in problem.recordings:
-        values = problem.values(mapped, best.free, best.theta)
+        values = problem.parameter_vector(mapped, best.free, best.theta)
         states = mapped.smooth(values, on, best.levels).means
         force = states[:, 3 * nq + 1 : 5 * nq : 2] / swell(values, on).frequency
         rates = problem.program.to_body_velocities(states[:, : 2 * nq])[:, nq:]

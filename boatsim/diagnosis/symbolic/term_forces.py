@@ -92,7 +92,7 @@ class FittedRecording:
     @cached_property
     def parameter_values(self) -> Array:
         """Parameter values of the fitted vessel model for this recording."""
-        return self.problem.values(self.recording, self.fit.free, self.fit.theta)
+        return self.problem.parameter_vector(self.recording, self.fit.free, self.fit.theta)
 
     @cached_property
     def effect_switches(self) -> Array:
@@ -262,7 +262,7 @@ def fitted_recordings(problem: Problem, fit: Fit) -> list[FittedRecording]:
     on, nq = problem.program.effect_switches(fit.effects), problem.program.module.NQ
     fitted = []
     for recording in problem.recordings:
-        values = problem.values(recording, fit.free, fit.theta)
+        values = problem.parameter_vector(recording, fit.free, fit.theta)
         means, covariances, gains = recording.smooth(values, on, fit.levels)
         states, residual = means[:, : 2 * nq].copy(), means[:, 2 * nq : 3 * nq].copy()
         smoother = (covariances, gains)

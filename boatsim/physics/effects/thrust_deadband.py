@@ -26,7 +26,7 @@ def transform_signal(
 ) -> SignalSegment:
     """Return the thrust or shaft command after a dead band, at each of the three instants.
 
-    Commands inside the dead band give zero.
+    Commands inside the dead band give zero; all others are reduced by its half width.
 
     Args:
         x: Signal of the actuator before the effect, at begin, middle and end of the step.

@@ -77,7 +77,7 @@ class ChannelBindings:
         """
         roles: dict[str, str] = {}
         for effect in self.effects:
-            for role, channel in self.specified_bindings(effect).items():
+            for role, channel in self.specified_inputs(effect).items():
                 if isinstance(channel, str):
                     roles.setdefault(channel, role)
         return roles
@@ -108,7 +108,7 @@ class ChannelBindings:
         found = dict.fromkeys(self.commands, True)
         used = set[str]()
         for effect in self.effects:
-            for role, channel in self.specified_bindings(effect).items():
+            for role, channel in self.specified_inputs(effect).items():
                 if channel in found and isinstance(channel, str):
                     used.add(channel)
                     found[channel] &= type(effect).roles[role].direction
@@ -161,7 +161,7 @@ class ChannelBindings:
         """
         first, *_ = self.signal_sums.get(channel, (channel,))
         for effect in self.effects:
-            for role, bound in self.specified_bindings(effect).items():
+            for role, bound in self.specified_inputs(effect).items():
                 if bound == first:
                     return type(effect).roles[role].unit
         return ""
@@ -187,7 +187,7 @@ class ChannelBindings:
             -1 for port, +1 for starboard, 0 for the middle.
         """
         for effect in self.effects:
-            if channel in self.specified_bindings(effect).values():
+            if channel in self.specified_inputs(effect).values():
                 y = float(getattr(effect, "y", 0.0))
                 return int(y > 0.0) - int(y < 0.0)
         for effect in self.effects:
@@ -233,7 +233,7 @@ class ChannelBindings:
         ]
 
     @staticmethod
-    def specified_bindings(effect: Effect) -> Mapping[str, str | float]:
+    def specified_inputs(effect: Effect) -> Mapping[str, str | float]:
         """Return the channels or constants that an effect's own table assigns to its input signals.
 
         The keys are the roles of the signals, such as "thrust".
@@ -249,7 +249,7 @@ class ChannelBindings:
         a command or a measured channel that a law uses. An optional role stays unbound then: a
         fixed thruster does not turn with the only rudder.
         """
-        bound = dict(self.specified_bindings(effect))
+        bound = dict(self.specified_inputs(effect))
         if bound:
             return bound
         for role, about in type(effect).roles.items():
@@ -326,7 +326,7 @@ def check_bindings(vessel: ChannelBindings, label: str) -> None:
 
 def _check_roles(vessel: ChannelBindings, effect: Effect, what: str) -> None:
     roles = type(effect).roles
-    for role, channel in vessel.specified_bindings(effect).items():
+    for role, channel in vessel.specified_inputs(effect).items():
         if role not in roles:
             raise BadInput(unknown_name_message(f"{what}: on", role, roles))
         if isinstance(channel, str) and channel not in vessel.inputs:

@@ -93,7 +93,9 @@ def track_of(best: Mapping[str, Sequence[Classification]]) -> Track | None:
 
 
 def constant_heading_fault(t: Array, x: Array, y: Array, psi: Array) -> str:
-    """Return why a heading (K,) [rad] was not measured, "" if it may have been.
+    """Return why a constant heading (K,) [rad] was not measured: the boat moves, but not along it.
+
+    Returns "" for a heading that varies or may have been measured.
 
     Args:
         t: Times (N,) of the positions [s].

@@ -95,7 +95,9 @@ def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_pat
     boat = vessel.load_vessel(name)
     problem = problem_of(boat)
     found = recalibrated(problem, OFF)
-    fitted = free_run(problem, problem.values(problem.recordings[0], found.free, found.theta), ())
+    fitted = free_run(
+        problem, problem.parameter_vector(problem.recordings[0], found.free, found.theta), ()
+    )
     patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     again = problem_of(vessel.load_vessel(str(tmp_path / "patched.toml")))
     replayed = free_run(again, again.recordings[0].values, ())
@@ -113,7 +115,7 @@ def test_a_patched_file_states_what_a_rule_would_fill_in_otherwise(tmp_path: Pat
     found = recalibrated(problem, OFF)
     patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     again = vessel.load_vessel(str(tmp_path / "patched.toml"), ["condition_1"])
-    fitted = problem.values(problem.recordings[0], found.free, found.theta)
+    fitted = problem.parameter_vector(problem.recordings[0], found.free, found.theta)
     np.testing.assert_allclose(
         Program(again).values(), fitted[: len(Program(again).values())], rtol=1e-9
     )
@@ -213,7 +215,7 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(
     )
     assert len(free) == len(found.theta)
     fitted = free_run(
-        problem, problem.values(problem.recordings[0], free, found.theta), found.effects
+        problem, problem.parameter_vector(problem.recordings[0], free, found.theta), found.effects
     )
     patched_vessel.write_patched_vessel(problem, boat, found, tmp_path / "patched.toml")
     patched = vessel.load_vessel(str(tmp_path / "patched.toml"))

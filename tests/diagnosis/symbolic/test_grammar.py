@@ -206,7 +206,7 @@ def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
     for slot, term in found.ranking.described_terms.items():
         for key, x in term.with_all_parameters(BOAT).law_parameters().items():
             laid.values[found.problem.program.parameter_index(slot, key)] = x
-    here = found.problem.values(laid, fit.free, fit.theta)
+    here = found.problem.parameter_vector(laid, fit.free, fit.theta)
     again = map_recording(held_out, program)
     ours = laid.free_runs(
         here,

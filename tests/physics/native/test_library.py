@@ -191,7 +191,7 @@ def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
         problem = Problem([mapped], levels, {})
         fit = fit_noise(problem, problem.nominal_hypothesis())
         everything = program.effect_switches(program.candidate_names)
-        values = problem.values(mapped, fit.free, fit.theta)
+        values = problem.parameter_vector(mapped, fit.free, fit.theta)
         smoothed = mapped.smooth(values, everything, fit.levels)
         runs = mapped.free_runs(values, everything, fit.levels, 4.0)
         found.append([fit.levels.force, smoothed.means, smoothed.covariances, *dict(runs).values()])
