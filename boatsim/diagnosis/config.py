@@ -1521,10 +1521,10 @@ class DecideConfig:
     The regression is one of right and wrong effects, over about 1,080 simulated logs with known
     causes, made by `validation.calibration` with the seeds 2 and 3 while its shares of the kinds of
     logs were being chosen. The two weights of a stochastic force were fitted again to about 650
-    logs of the seeds 4 to 6, those of `unexplained`, `structure` and `alternative` to the 306 logs
-    with a cause among the first 419 of seed 9, when these signs were related to the axes of an
-    effect. `python -m validation.calibration --weights` fits weights to the logs that it has
-    diagnosed. Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
+    logs of the seeds 4 to 6, and that of `alternative` to the 306 logs with a cause among the first
+    419 of seed 9 and the first 210 of seed 10, when this sign was related to the axes of an effect.
+    `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
+    Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
     """
 
     least_probability: float = setting(
@@ -1592,8 +1592,8 @@ class DecideConfig:
         0.3,
         "1",
         "Size of the force of an effect along an axis, relative to the axis of its largest one, "
-        "from which the force that remains along that axis counts as a sign against it. A wind "
-        "or a shifted mass centre acts along all axes, a drag mainly along one.",
+        "from which a force along that axis could take its place. A wind or a shifted mass centre "
+        "acts along all axes, a drag mainly along one.",
         0.0,
         1.0,
     )
@@ -1674,25 +1674,25 @@ class DecideConfig:
         low=-inf,
     )
     unexplained: float = setting(
-        -1,
+        -0.274,
         "1",
-        "Weight: evidence that remains unexplained along the axes of the effect, as a share of its "
-        "own evidence.",
+        "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
+        "cause.",
         low=-inf,
     )
     structure: float = setting(
-        -2.19,
+        -1.25,
         "1",
-        "Weight: dependence of the force that remains along the axes of the effect on motion, "
-        "commands, place or time, as a share of all gained evidence. The level of that force is "
-        "the fitted one, so that a rough vessel file does not decide.",
+        "Weight: dependence of the remaining force on motion, commands, place or time, as a "
+        "share of all gained evidence.",
         low=-inf,
     )
     alternative: float = setting(
-        -1.28,
+        -0.674,
         "1",
         "Weight: evidence of the best single-term force along the axes of the effect in its place, "
-        "as a share of its own evidence.",
+        "as a share of its own evidence. The level of the latent force is the one fitted without "
+        "the effect.",
         low=-inf,
     )
     prior_distance: float = setting(

@@ -22,7 +22,6 @@ from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.open_set.effect_axes import effect_axes
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
-from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.physics.base import Array, Effect
 
 # prior sd of a factor, so that a part without information does not make the equations singular
@@ -82,12 +81,8 @@ class Consistency:
         parts_that_gain: Share of the parts in time whose likelihood increases by the effect.
         held_out_gain: Log-likelihood that held-out recordings gain by it [nats].
         axes: Axes along which it acts; all for an error of an instrument.
-        structure_gain: Evidence of the largest dependence of the force that remains along these
-            axes on motion, commands, place or time [nats].
-        unexplained_gain: Evidence for a force beyond the assumed disturbance along one of them
-            [nats].
         alternative_gain: Evidence of the best single-term force along these axes in its place
-            [nats].
+            [nats], at the level of the latent force that is fitted without the effect.
         prior_distance: Largest distance of its parameters from zero effect, in prior sds.
         at_bound: Whether a parameter is at a bound of its range.
     """
@@ -100,8 +95,6 @@ class Consistency:
     parts_that_gain: float
     held_out_gain: float
     axes: tuple[str, ...]
-    structure_gain: float
-    unexplained_gain: float
     alternative_gain: float
     prior_distance: float
     at_bound: bool
@@ -148,10 +141,6 @@ def effect_consistency(
     ranges = list(_ranges(problem, best))
     unseen_problem = problem.on(held_out)
     unseen = _linearised(unseen_problem, best) if held_out else None
-    remaining = find_structure(problem, best, best.levels)
-    unexplained = {}
-    for axis in dof_in_state_order(problem.program.vessel):
-        unexplained[axis] = unexplained_evidence(problem, best, axis)
     found = {}
     for name, without in without_each.items():
         size = _change_by_factor(best, problem.candidates[name])
@@ -178,8 +167,6 @@ def effect_consistency(
             _parts_that_gain(problem, best, without, parts),
             unseen_gain,
             axes,
-            remaining.gain_along(axes),
-            max(unexplained[axis] for axis in axes),
             find_structure(problem, without, without.levels).gain_along(axes),
             _prior_distance(best, name),
             _at_bound(best, name),

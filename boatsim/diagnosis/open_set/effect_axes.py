@@ -1,4 +1,4 @@
-"""Axes along which an identified effect acts, compared with the force that remains unexplained."""
+"""Axes along which an identified effect acts, on which another force could take its place."""
 
 import numpy as np
 

@@ -44,8 +44,8 @@ def logistic_features(
     """
     held_out = consistency.held_out
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.law_error)
-    gain = max(effect.gain, 1.0)
-    structure = consistency.structure_gain / max(log_signs.effects_gain, 1.0)
+    alternative = consistency.alternative_gain / max(effect.gain, 1.0)
+    structure = log_signs.structure_gain / max(log_signs.effects_gain, 1.0)
     distance = consistency.prior_distance
     if stochastic:  # the prior of a disturbance is a usual level, not what is plausible
         distance = 0.0
@@ -56,9 +56,9 @@ def logistic_features(
         "held_out_deviation": _within(off, 0.0, MOST_DEVIATION),
         "times_apart": _within(consistency.between_times.excess, 0.0, MOST_EXCESS),
         "ranges_apart": _within(consistency.between_ranges.excess, 0.0, MOST_EXCESS),
-        "unexplained": _within(consistency.unexplained_gain / gain, 0.0, 2.0),
+        "unexplained": _within(log_signs.unexplained, 0.0, 4.0),
         "structure": _within(structure, 0.0, 1.0),
-        "alternative": _within(consistency.alternative_gain / gain, 0.0, 2.0),
+        "alternative": _within(alternative, 0.0, 2.0),
         "prior_distance": log1p(distance),
         "at_bound": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),

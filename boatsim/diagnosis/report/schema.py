@@ -115,9 +115,6 @@ class ConsistencyEntry(TypedDict):
     parts_that_gain: float  # share of the parts in time whose likelihood increases
     held_out_gain: float  # [nats]
     axes: list[str]  # along which it acts
-    # [nats] of the largest dependence of the remaining force along them
-    structure_gain: float
-    unexplained_gain: float  # [nats] for a force beyond the assumed disturbance along them
     alternative_gain: float  # [nats] of the best single-term force along them in its place
     prior_distance: float  # largest distance from zero effect, in prior sds
     at_bound: bool

@@ -96,8 +96,6 @@ def _consistency(signs: Consistency) -> ConsistencyEntry:
         "parts_that_gain": round(signs.parts_that_gain, 4),
         "held_out_gain": round(signs.held_out_gain, 3),
         "axes": list(signs.axes),
-        "structure_gain": round(signs.structure_gain, 3),
-        "unexplained_gain": round(signs.unexplained_gain, 3),
         "alternative_gain": round(signs.alternative_gain, 3),
         "prior_distance": round(signs.prior_distance, 4),
         "at_bound": signs.at_bound,

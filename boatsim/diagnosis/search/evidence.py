@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.config import DEFAULT, SelectConfig
-from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 
 
@@ -109,7 +108,7 @@ def leading_candidates(
     return [n for n in order if gains[n] > best - distance]
 
 
-def unexplained_evidence(problem: Problem, best: Fit, axis: str = "") -> float:
+def unexplained_evidence(problem: Problem, best: Fit) -> float:
     """Return the evidence for an unmodelled force beyond the assumed disturbance level [nats].
 
     It is the log likelihood that a fit loses if its latent force is limited to that level.
@@ -117,14 +116,10 @@ def unexplained_evidence(problem: Problem, best: Fit, axis: str = "") -> float:
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         best: Fit of the vessel model with some candidate effects.
-        axis: The axis along which the force is limited; "" for all.
     """
     factor = problem.config.locate.disturbance_factor
     on = problem.program.effect_switches(best.effects)
     force = np.minimum(best.levels.force, factor * problem.ambient.force)
-    if axis:
-        others = np.array(dof_in_state_order(problem.program.vessel)) != axis
-        force[others] = best.levels.force[others]
     held = replace(best.levels, force=force)
     free = problem.log_likelihood(best.free, best.theta, on, best.levels)
     return free - problem.log_likelihood(best.free, best.theta, on, held)
