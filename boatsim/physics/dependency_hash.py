@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
-# What may be an import statement: only these lines are parsed, which is ten times faster than to
-# parse the files
+# What may be an import statement: only these lines are parsed, because every command that loads
+# compiled code waits for this
 IMPORT = re.compile(r"^[ \t]*(?:from[ \t]+\S+[ \t]+)?import[ \t]+(?:\([^)]*\)|.*)", re.MULTILINE)
 
 

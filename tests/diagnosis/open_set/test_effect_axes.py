@@ -45,24 +45,21 @@ def test_an_effect_acts_along_the_axes_of_its_force(fitted: tuple[Problem, Fit, 
     assert effect_axes(problem, best, EFFECT) == ("surge",)
 
 
-def test_an_error_of_an_instrument_counts_on_all_axes(fitted: tuple[Problem, Fit, Fit]) -> None:
-    problem, without, _ = fitted
-    free = problem.free_parameters(("heading_offset",))
-    sensor = unfitted_hypothesis(
-        ("heading_offset",), free, prior_arrays(free).mean + prior_arrays(free).sd, without.levels
-    )
-    assert effect_axes(problem, sensor, "heading_offset") == ("surge", "sway", "yaw")
-
-
-def test_a_mass_counts_on_all_axes_because_it_acts_with_the_acceleration(
-    fitted: tuple[Problem, Fit, Fit],
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("heading_offset", id="error of an instrument"),
+        pytest.param("extra_mass", id="acts with the acceleration"),
+    ],
+)
+def test_an_effect_without_a_force_along_a_given_motion_counts_on_all_axes(
+    fitted: tuple[Problem, Fit, Fit], name: str
 ) -> None:
     problem, without, _ = fitted
-    free = problem.free_parameters(("extra_mass",))
-    more = unfitted_hypothesis(
-        ("extra_mass",), free, prior_arrays(free).mean + prior_arrays(free).sd, without.levels
-    )
-    assert effect_axes(problem, more, "extra_mass") == ("surge", "sway", "yaw")
+    free = problem.free_parameters((name,))
+    prior = prior_arrays(free)
+    changed = unfitted_hypothesis((name,), free, prior.mean + prior.sd, without.levels)
+    assert effect_axes(problem, changed, name) == ("surge", "sway", "yaw")
 
 
 def test_a_force_in_yaw_can_not_take_the_place_of_an_effect_in_surge(
