@@ -16,8 +16,6 @@ from statistics import median
 from time import perf_counter
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -34,6 +32,7 @@ LARGEST = {"cpu": 10_000}  # boats; on other devices all sizes
 WAYS = {"on mujoco_warp": True, "without MuJoCo": False}
 WIDEST = 1e3  # largest magnitude of a command
 SECONDS, BOATS = 10, 1_000  # length and size of the comparison
+WIDTH = 23  # [characters] of a column
 
 
 def random_case(boat: Vessel, *shape: int) -> tuple[Array, Array]:
@@ -63,16 +62,20 @@ def boat_steps_per_second(batch: Batch) -> float:
     return median(found)
 
 
-def speed_table(boat: Vessel, device: str, largest: int) -> Table:
-    """Return the table of rates."""
-    table = Table("boats", *(f"{way} [boat-steps/s]" for way in WAYS), box=None)
+def print_row(cells: Sequence[str]) -> None:
+    """Print a row of a table now: a table of a million boats takes minutes."""
+    print("".join(f"{cell:<{WIDTH}}" for cell in cells).rstrip(), flush=True)
+
+
+def print_speeds(boat: Vessel, device: str, largest: int) -> None:
+    """Print boat-steps/s for each number of boats."""
+    print_row(["boats", *WAYS])
     for n in (n for n in SIZES if n <= largest):
-        rates = (
-            boat_steps_per_second(Batch(boat, n, STEP, device, mujoco=on_mujoco))
-            for on_mujoco in WAYS.values()
-        )
-        table.add_row(f"{n:,}", *(f"{found:.2e}" for found in rates))
-    return table
+        cells = [f"{n:,}"]
+        for on_mujoco in WAYS.values():
+            batch = Batch(boat, n, STEP, device, mujoco=on_mujoco)
+            cells.append(f"{boat_steps_per_second(batch):.2e}")
+        print_row(cells)
 
 
 def largest_difference(boat: Vessel, device: str, on_mujoco: bool) -> float:
@@ -91,16 +94,15 @@ def largest_difference(boat: Vessel, device: str, on_mujoco: bool) -> float:
     return float((np.abs(np.array(found) - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
 
-def difference_table(device: str) -> Table:
-    """Return the table of differences."""
-    table = Table("vessel", *WAYS, box=None)
+def print_differences(device: str) -> None:
+    """Print the largest difference of each vessel."""
+    print_row(["vessel", *WAYS])
     for path in sorted(Path("models").glob("*/vessel.toml")):
         boat = vessel.load_vessel(path.parent.name)
-        table.add_row(
-            boat.name,
-            *(f"{largest_difference(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values()),
-        )
-    return table
+        cells = [boat.name]
+        for on_mujoco in WAYS.values():
+            cells.append(f"{largest_difference(boat, device, on_mujoco):.1e}")
+        print_row(cells)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -121,13 +123,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
             f"{found} ({found.name}), steps of {STEP:g} s"
             + ("" if given.agreement else f", {given.vessel}")
         )
+        if given.agreement:
+            print_differences(given.device)
+            return
         most = given.most or LARGEST.get(given.device, max(SIZES))
-        boat = vessel.load_vessel(given.vessel)
-        Console().print(
-            difference_table(given.device)
-            if given.agreement
-            else speed_table(boat, given.device, most)
-        )
+        print_speeds(vessel.load_vessel(given.vessel), given.device, most)
     except BadInput as error:
         raise SystemExit(f"error: {error}") from None
 

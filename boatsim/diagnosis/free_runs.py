@@ -32,7 +32,7 @@ class FreeRun:
     channels: dict[str, dict[str, Array]]
 
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:
-        """Return the differences (M,) between the simulation by one model and the recorded signals.
+        """Return simulated minus recorded values of some signals, an array (M,) for each of them.
 
         Args:
             model: Name of the model.

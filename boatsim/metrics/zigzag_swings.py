@@ -44,7 +44,7 @@ class ZigzagSwings(MetricSet):
         return f"{count} reversals of {self.signal}"
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Return reversal times and period of a zig-zag, and extremes of its motion, from a log.
+        """Return the rudder's reversal times, the period and the largest motions of a zig-zag test.
 
         The period is the mean from the first reversal to the last. The extremes are those of
         heading, yaw rate, roll, sway and surge speed.

@@ -67,7 +67,7 @@ class Camera(CheckedParameters):
         turn = off.conj() / (np.abs(off) ** 2).sum()
         return 1.0 / len(off) - self.mark_positions.mean() * turn, turn
 
-    def measure_marks(self, place: Array, psi: Array, noise: Array) -> Array:
+    def measured_mark_positions(self, place: Array, psi: Array, noise: Array) -> Array:
         """Return the positions of the hull marks that the camera measures, with noise.
 
         Args:
@@ -113,7 +113,7 @@ class Camera(CheckedParameters):
             pose: True pose.
             noise: Standard normal numbers (2 M,).
         """
-        marks = self.measure_marks(
+        marks = self.measured_mark_positions(
             np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise
         )
         place, psi = self.fit_pose(marks)

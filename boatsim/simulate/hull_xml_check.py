@@ -49,7 +49,7 @@ class Tag(NamedTuple):
         attributes: Values of the attributes, without escapes.
         closing: Whether it is a closing tag.
         inside: Whether the element has content, which a closing tag ends.
-        text: The tag as it stands in the file, without escapes.
+        text: Text of the tag with escapes such as &lt; replaced.
     """
 
     name: str

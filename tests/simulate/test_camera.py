@@ -37,7 +37,9 @@ def test_marks_stand_where_a_turned_hull_carries_them() -> None:
 def test_the_pose_scatters_as_the_notes_say(marks: dict[str, tuple[float, float]]) -> None:
     camera, n = Camera(mark_sd=0.003, marks=marks), 40_000
     noise = np.random.default_rng(1).standard_normal((n, 2 * len(marks)))
-    place, psi = camera.fit_pose(camera.measure_marks(np.zeros(n), np.full(n, 0.7), noise))
+    place, psi = camera.fit_pose(
+        camera.measured_mark_positions(np.zeros(n), np.full(n, 0.7), noise)
+    )
     told = camera.pose_noise()
     assert (place.real.std(), place.imag.std()) == pytest.approx(
         (told["position_sd_m"],) * 2, rel=0.02
@@ -93,7 +95,7 @@ def test_marks_that_can_not_be_are_one_line(marks: object, line: str) -> None:
 
 def test_size_of_the_picture_does_not_turn_the_boat() -> None:
     camera = Camera(marks=MARKS)
-    seen = camera.measure_marks(np.array(0j), np.array(0.3), np.zeros(6))
+    seen = camera.measured_mark_positions(np.array(0j), np.array(0.3), np.zeros(6))
     assert camera.fit_pose(1.05 * seen)[1] == pytest.approx(0.3)
     assert replace(camera, mark_sd=0.0).pose_noise() == {
         "position_sd_m": 0.0,

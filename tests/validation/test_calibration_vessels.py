@@ -77,7 +77,7 @@ def test_boatsim_reads_a_simulated_trial(tmp_path: Path, name: str, concealed: b
     makers = (unknown_causes.flooded_tank,)
     trial = Trial("T001_" + name, name, "unknown", concealed, False, makers, plan, boat)
     oracle = simulate_trial(trial, (4, 1), np.array([0.3]))
-    write_trial(tmp_path / trial.name, boat(), plan, oracle.voyage, {"kind": "unknown"})
+    write_trial(tmp_path / trial.name, boat(), oracle.voyage, {"kind": "unknown"}, trial)
     recording, found = open_recording(tmp_path / trial.name / "run_3.csv", None, ())
     assert found.name == name
     assert len(recording) >= 240

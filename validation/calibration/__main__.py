@@ -25,6 +25,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument(
+        "--unstated",
+        action="store_true",
+        help="with a disturbance that is larger than usual and not stated, and laws with errors",
+    )
     parser.add_argument("--tables", action="store_true", help="only print the tables")
     parser.add_argument(
         "--weights", action="store_true", help="print the weights of the signs that fit best"
@@ -35,7 +40,7 @@ def main() -> None:
     parser.add_argument("--curve", type=Path, help="write the reliability curve to this SVG file")
     args = parser.parse_args()
     if not args.tables:
-        campaign.run(args.out, args.seed, args.trials, args.jobs)
+        campaign.run(args.out, args.seed, args.trials, args.jobs, args.unstated)
     records = list(campaign.records(args.out))
     table.print_tables(records)
     if args.weights:

@@ -4,7 +4,7 @@ import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,10 @@ OUTLIER_SHARE = 0.2  # of trials whose instruments have outliers
 # share of the usual number of trials: six degrees of freedom, and a polynomial with forty
 # coefficients, take longer
 SLOW = {"otter": 0.12, "mariner": 0.6}
+# with an unstated disturbance: largest level over the usual one, and largest number of weak causes
+# outside the library, as every model of a real boat has errors of form
+STRONGEST_DISTURBANCE = 10.0
+MOST_BACKGROUND = 2
 
 Record = dict[str, Any]
 
@@ -46,11 +50,12 @@ class Job:
 
     seed: int
     number: int
+    unstated: bool = False  # whether the disturbance is larger than usual and not stated
 
     @property
     def name(self) -> str:
         """Name of its record."""
-        return f"S{self.seed}_T{self.number:05d}"
+        return f"{'U' if self.unstated else 'S'}{self.seed}_T{self.number:05d}"
 
     def trial(self) -> Trial:
         """Return its specification, a function of seed and number alone."""
@@ -66,7 +71,7 @@ class Job:
         if kind == "mixed":
             causes = sample(known, 1, rng) + sample(unknown, 1, rng)
         rough = bool(rng.random() < ROUGH_SHARE)
-        return Trial(
+        trial = Trial(
             f"T{self.number:05d}_{vessel}",
             vessel,
             kind,
@@ -78,6 +83,17 @@ class Job:
             calibration=ROUGH if rough else CALIBRATION,
             stated=rough,
         )
+        if not self.unstated:
+            return trial
+        background = int(rng.integers(MOST_BACKGROUND + 1))
+        others = [maker for maker in unknown if maker not in causes]
+        return replace(
+            trial,
+            makers=causes + sample(others, min(background, len(others)), rng),
+            background=min(background, len(others)),
+            disturbance=float(np.exp(rng.uniform(0.0, np.log(STRONGEST_DISTURBANCE)))),
+            level_stated=False,
+        )
 
 
 def sample(makers: Sequence[Maker], count: int, rng: Rng) -> tuple[Maker, ...]:
@@ -85,7 +101,7 @@ def sample(makers: Sequence[Maker], count: int, rng: Rng) -> tuple[Maker, ...]:
     return tuple(makers[i] for i in rng.choice(len(makers), count, replace=False))
 
 
-def run(out: Path, seed: int, count: int, jobs: int) -> None:
+def run(out: Path, seed: int, count: int, jobs: int, unstated: bool = False) -> None:
     """Make and diagnose the trials that have no record yet.
 
     Args:
@@ -93,11 +109,12 @@ def run(out: Path, seed: int, count: int, jobs: int) -> None:
         seed: Seed of the campaign.
         count: Number of trials.
         jobs: Number of processes.
+        unstated: Whether the disturbance is larger than usual and not stated.
     """
     out.mkdir(parents=True, exist_ok=True)
     waiting = []
     for number in range(1, count + 1):
-        job = Job(seed, number)
+        job = Job(seed, number, unstated)
         if not record_file(out, job).is_file():
             waiting.append(job)
     if not waiting:
@@ -117,7 +134,7 @@ def record_file(out: Path, job: Job) -> Path:
 
 def records(out: Path) -> Iterator[Record]:
     """Yield the recorded diagnoses of a folder in order of their names."""
-    for file in sorted(out.glob("S*_T*.json")):
+    for file in sorted(out.glob("[SU]*_T*.json")):
         yield from json.loads(file.read_text())
 
 
@@ -173,6 +190,17 @@ def look_alikes(answer: Mapping[str, Any], found: Record) -> tuple[str, ...]:
     return ()
 
 
+def causes_of(answer: Mapping[str, Any], background: int) -> list[str]:
+    """Return the causes of a trial, without those of the background.
+
+    Args:
+        answer: Its answer.json.
+        background: Number of weak causes outside the library, its last ones.
+    """
+    names = [effect["name"] for effect in answer["effects"]]
+    return names[: len(names) - background]
+
+
 def diagnosed(
     files: Path, trial: Trial, answer: Mapping[str, Any], without: Sequence[str]
 ) -> Record:
@@ -209,7 +237,9 @@ def diagnosed(
         "kind": kind,
         "concealed": trial.concealed,
         "rough": trial.stated,
-        "causes": [effect["name"] for effect in answer["effects"]],
+        "disturbance": trial.disturbance,
+        "background": trial.background,
+        "causes": causes_of(answer, trial.background),
         "equivalent": answer.get("equivalent", {}),
         "visible": answer.get("visible", False),
         "borderline": answer.get("borderline", False),

@@ -39,6 +39,7 @@ FIRST, WEAK_TO_STRONG = (
     (0.03, 1.2),
 )  # initial strength, scaled to reach the target evidence
 WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] sampled log-uniformly
+BACKGROUND_WANTED = (3.0, 60.0)  # [nats] of errors of the model's form
 OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and size in sd of the instrument
 
 
@@ -56,18 +57,22 @@ class Trial:
     boat: Callable[[], Boat]
     calibration: float = CALIBRATION  # relative sd of the real boat's damping and thrust
     stated: bool = False  # whether recording.toml states that sd
+    disturbance: float = 1.0  # ambient force over that of the practice set
+    level_stated: bool = True  # whether recording.toml states the level of the ambient force
+    background: int = 0  # weak causes outside the library, the last of the makers
 
     @property
     def strange(self) -> list[bool]:
-        """Whether each cause is outside the library; of a mixed trial only the last one is."""
-        count = len(self.makers)
+        """Whether each cause is outside the library; of a mixed trial the last main one is."""
+        count = len(self.makers) - self.background
+        main = [self.kind == "unknown"] * count
         if self.kind == "mixed":
-            return [False] * (count - 1) + [True]
-        return [self.kind == "unknown"] * count
+            main = [False] * (count - 1) + [True]
+        return main + [True] * self.background
 
     def nominal(self) -> Boat:
         """Return the boat of the vessel file, with the uncertainty that the trial states."""
-        boat = self.boat()
+        boat = replace(self.boat(), disturbance=self.disturbance)
         if not self.stated:
             return boat
         kinds = sorted({"damping", "thrust"} & set(boat.kinds.values()))
@@ -121,7 +126,7 @@ class Deck:
 def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder and return its answer."""
     seeds = (seed, int(trial.name[1:].partition("_")[0]))
-    plan, strange = trial.plan, any(trial.strange)
+    strange = any(trial.strange)
     strengths, oracle, gains = choose_strengths(trial, seeds)
     answer = {
         "kind": trial.kind,
@@ -136,7 +141,7 @@ def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
             for f, s in zip(FAMILIES, oracle.noise, strict=True)
             if s
         },
-        **evidence_entries(trial.strange, gains),
+        **evidence_entries(trial, gains),
         **equivalent_effects(trial, oracle.causes),
     }
     rng = np.random.default_rng([*seeds, 1])
@@ -147,7 +152,7 @@ def make_trial(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
             k: round(v, 6) for k, v in rms.items() if k != left_out
         }
     voyage = add_outliers(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
-    write_trial(out / trial.name, oracle.nominal, plan, voyage, answer, trial.stated)
+    write_trial(out / trial.name, oracle.nominal, voyage, answer, trial)
     return answer
 
 
@@ -158,8 +163,11 @@ def choose_strengths(trial: Trial, seeds: tuple[int, int]) -> tuple[Array, Oracl
         The strengths of the causes, the trial, and the gains [nats].
     """
     wanted = []
+    main = len(trial.makers) - trial.background
     for i, strange in enumerate(trial.strange):
         low, high = np.log(STRANGE_WANTED if strange else WANTED)
+        if i >= main:
+            low, high = np.log(BACKGROUND_WANTED)
         wanted.append(np.exp(np.random.default_rng([*seeds, 0, i]).uniform(low, high)))
     strengths = np.full(len(wanted), FIRST)
     oracle = simulate_trial(trial, seeds, strengths)
@@ -233,10 +241,12 @@ def evidence_gains(oracle: Oracle, strange: Sequence[bool]) -> Array:
     return np.array(gains)
 
 
-def evidence_entries(strange: Sequence[bool], gains: Array) -> dict[str, Any]:
-    """Return the entries about evidence in answer.json."""
+def evidence_entries(trial: Trial, gains: Array) -> dict[str, Any]:
+    """Return the entries about evidence in answer.json, of all causes but the background."""
+    gains = gains[: len(gains) - trial.background]
     if not len(gains):
         return {}
+    strange = trial.strange[: len(gains)]
     thresholds = np.array([STRANGE_SEEN if outside else SEEN for outside in strange])
     weakest = int(np.argmin(gains / thresholds))
     low, high = STRANGE_SURE if strange[weakest] else SURE
@@ -271,26 +281,27 @@ def add_outliers(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
     return replace(voyage, recorded=voyage.recorded + jump * hit[:, None, :])
 
 
-def write_trial(
-    folder: Path,
-    boat: Boat,
-    plan: Plan,
-    voyage: Voyage,
-    answer: dict[str, Any],
-    stated: bool = False,
-) -> None:
-    """Write recording.toml, three runs and answer.json."""
-    folder.mkdir(parents=True, exist_ok=True)
-    noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in plan.noise.items()}
+def ambient_table(boat: Boat) -> str:
+    """Return the table of recording.toml with the level of the ambient force."""
     size = dict(zip(AXES, boat.ambient(), strict=True))
     free = [AXES[i] for i in boat.free]
     force_rms = ", ".join(f"{size[axis]:.3g}" for axis in free)
-    (folder / "recording.toml").write_text(
-        f'vessel = "{boat.name}"\n\n[noise]\n'
-        + "".join(f"{k} = {noise[k]:g}\n" for k in STATED if k in noise)
-        + f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{force_rms}]\n"
-        + (uncertainty_table(boat) if stated else "")
-    )
+    return f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{force_rms}]\n"
+
+
+def write_trial(
+    folder: Path, boat: Boat, voyage: Voyage, answer: dict[str, Any], trial: Trial
+) -> None:
+    """Write recording.toml, three runs and answer.json."""
+    folder.mkdir(parents=True, exist_ok=True)
+    noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in trial.plan.noise.items()}
+    notes = f'vessel = "{boat.name}"\n\n[noise]\n'
+    notes += "".join(f"{k} = {noise[k]:g}\n" for k in STATED if k in noise)
+    if trial.level_stated:
+        notes += ambient_table(boat)
+    if trial.stated:
+        notes += uncertainty_table(boat)
+    (folder / "recording.toml").write_text(notes)
     t = np.arange(voyage.grid.rows) * voyage.grid.row
     used = [i for i in range(len(boat.channels)) if np.any(voyage.commands[:, i])]
     names = ["t_s", *(COLUMNS[i] for i in boat.free), *(list(boat.channels)[i] for i in used)]

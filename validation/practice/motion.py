@@ -78,6 +78,7 @@ class Boat:
     channels: Mapping[str, tuple[float, float]]  # low, high
     coriolis: float = 1.0  # share of the water's Coriolis force
     cruise: float = 0.0  # [m/s] speed about which the model is linearised
+    disturbance: float = 1.0  # ambient force over the usual one
 
     @property
     def tilts(self) -> bool:
@@ -91,14 +92,14 @@ class Boat:
 
     @property
     def push(self) -> float:
-        """Rms of the ambient force [N]: 2.2e-4 of the weight."""
+        """Usual rms of the ambient force [N]: 2.2e-4 of the weight."""
         return 2.2e-4 * self.mass * GRAVITY
 
     def ambient(self) -> Array:
         """Rms of the ambient forces (6,) [N, N m]."""
         lever = np.array([1.0, 1.0, 1.0, self.draught, 0.25 * self.length, 0.25 * self.length])
         held = np.isin(np.arange(6), self.free)
-        return np.asarray(self.push * lever * held)
+        return np.asarray(self.disturbance * self.push * lever * held)
 
     def inverse(self) -> Array:
         """Inverse (6, 6) of the total mass over the free axes, zero elsewhere."""

@@ -164,7 +164,7 @@ class ThesisTest:
         noise = marks.standard_normal((len(frames), 2 * len(camera.marks)))[::every]
         frames = frames[::every]
         x, east, psi = (np.interp(frames, t, column) for column in y[:, :3].T)
-        seen = camera.measure_marks(x + 1j * east, psi, noise)
+        seen = camera.measured_mark_positions(x + 1j * east, psi, noise)
         points = {}
         for name, z in zip(camera.marks, seen.T, strict=True):
             points[name] = np.stack([z.real, z.imag], axis=-1)

@@ -32,6 +32,8 @@ class LogSigns:
         held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
             beyond what the uncertainty of the parameters explains.
         held_out_structured: Whether that dependence is significant.
+        level_assumed: Whether the disturbance level is that of a rule: neither the recordings nor
+            the vessel file state it.
     """
 
     coefficient_shift: float
@@ -43,6 +45,7 @@ class LogSigns:
     held_out_unexplained: float = 0.0
     held_out_structure: float = 0.0
     held_out_structured: bool = False
+    level_assumed: bool = False
 
 
 NO_STRUCTURE = Structure("", "", 0.0, 1.0, 0, False)
@@ -75,6 +78,7 @@ def unknown_cause_indicators(
         remains / threshold,
         structure.gain,
         structure.significant,
+        problem.ambient.assumed,
     )
 
 

@@ -6,7 +6,7 @@ from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import Question
-from boatsim.diagnosis.report.schema import AmbientEntry, LeftOutEntry, RulesEntry
+from boatsim.diagnosis.report.schema import DisturbanceLevelEntry, LeftOutEntry, RulesEntry
 from boatsim.diagnosis.search.evidence import required_gain
 
 BY_USER = "--without"  # reason for a candidate that the user excluded
@@ -43,7 +43,7 @@ def assumptions_entry(problem: Problem, tested: int) -> RulesEntry:
     """
     vessel, levels = problem.program.vessel, problem.ambient
     thrust = full_thrust(problem.recordings[0])
-    ambient: dict[str, AmbientEntry] = {}
+    ambient: dict[str, DisturbanceLevelEntry] = {}
     for axis, rms in zip(dof_in_state_order(vessel), levels.force.tolist(), strict=True):
         ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": FORCE_UNITS[axis]}
         if thrust > 0.0 and FORCE_UNITS[axis] == "N":

@@ -317,7 +317,7 @@ class LeftOutEntry(TypedDict):
     reason: str  # a fact, a missing column, or the vessel's own reason
 
 
-class AmbientEntry(TypedDict):
+class DisturbanceLevelEntry(TypedDict):
     """The assumed disturbance level (rms force) of one axis, in diagnosis.json."""
 
     rms: float
@@ -331,7 +331,7 @@ class RulesEntry(TypedDict):
     It is the table `rules` of diagnosis.json.
     """
 
-    ambient: dict[str, AmbientEntry]
+    ambient: dict[str, DisturbanceLevelEntry]
     time_constant_s: float
     horizon_s: float
     effect_gain_nats: float  # required for an effect, given the number of candidates

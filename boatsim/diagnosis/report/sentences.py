@@ -11,8 +11,8 @@ from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, setting_of
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import (
-    AmbientEntry,
     Answer,
+    DisturbanceLevelEntry,
     EffectEntry,
     LeftOutEntry,
     MeanEntry,
@@ -461,7 +461,7 @@ def _mean_with_sd(axis: str, mean: MeanEntry) -> str:
     return f"{size} {way} in {axis}{_of_thrust(mean)}"
 
 
-def _of_thrust(entry: MeanEntry | AmbientEntry) -> str:
+def _of_thrust(entry: MeanEntry | DisturbanceLevelEntry) -> str:
     share = entry.get("share_of_full_thrust")
     if share is None:
         return ""

@@ -75,13 +75,14 @@ class WeightOnArm(CoefficientRelease):
         return super().changes(vessel)
 
     def identifiable_ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
-        """Return the mass [kg] and its distance from the axis [m], if both changes have one sign.
+        """Return the equivalent point mass [kg] and its distance from the roll axis [m].
 
         Args:
             vessel: Vessel on which the effect acts.
 
         Returns:
-            Name -> (value, meaning in words); empty if no point mass has these changes.
+            Name -> (value, meaning in words); empty if the changes of inertia and of
+            moment differ in sign, which no point mass causes.
         """
         if self.inertia * self.moment <= 0.0:
             return {}
