@@ -7,13 +7,19 @@ estimates of parameters are not biased to absorb it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
+from boatsim.diagnosis.filter_arguments import (
+    FilterArguments,
+    VesselArguments,
+    inertia_with_added_mass,
+    rigid_body_values,
+)
 from boatsim.diagnosis.input_noise import (
     input_noise_density,
     interpolate_measured_inputs,
@@ -21,7 +27,13 @@ from boatsim.diagnosis.input_noise import (
     measured_input_indices,
 )
 from boatsim.diagnosis.recent_results import RecentResults
-from boatsim.diagnosis.work import COVARIANCE, DERIVATIVES, SMOOTHER, WorkCount
+from boatsim.diagnosis.work import (
+    COVARIANCE,
+    DERIVATIVES,
+    SMOOTHER,
+    WorkCount,
+    integration_count,
+)
 from boatsim.errors import BadInput
 from boatsim.physics.base import DriftingMeasurement, RandomForce
 from boatsim.physics.commands import clipped_recorded_commands
@@ -30,7 +42,6 @@ from boatsim.physics.kernel.records import (
     FilterStart,
     Inputs,
     LatentForce,
-    Measurements,
     PassArrays,
     PassOptions,
     VesselNumbers,
@@ -43,11 +54,6 @@ from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
 # rows: the shortest recording allowed is split into thirds
 FEWEST_IN_PART = FEWEST_ROWS // 3
-# numbers of the body at the end of a run's parameter values, [kg], [m], [kg m^2], as in
-# `Program.body`
-BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
-# entries of the mass matrix at the end of the constants of a compiled pass, the diagonal first
-MASS_ENTRIES = 12
 # Latest results of a recording that are kept, because the stages of a diagnosis ask for them again.
 # A pass over 6,000 rows in six degrees of freedom has 30 MB, free runs have 1 MB.
 KEPT_PASSES = 2
@@ -119,6 +125,7 @@ class FilterPass:
     scale: Array
     transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
     steps: Array  # (N,) integration steps [s]
+    integrations: float  # number of integration steps between the rows
 
     @cached_property
     def whitened_errors(self) -> RecentResults[Array]:
@@ -278,6 +285,12 @@ class MappedRecording:
             steps = _writable(about.steps)
         arrays = PassArrays(transitions, steps, gains, scale, whitened)
         found = self._run(values, on, levels, arrays, fresh=about is None)
+        if about is None:
+            integrations = integration_count(self.times, steps)
+        else:
+            integrations = about.integrations
+        matrices = COVARIANCE if about else COVARIANCE + DERIVATIVES
+        self._count_pass(integrations, matrices)
         return FilterPass(
             found,
             _read_only(whitened.ravel()),
@@ -285,6 +298,7 @@ class MappedRecording:
             _read_only(scale),
             _read_only(transitions),
             _read_only(steps),
+            integrations,
         )
 
     def log_likelihood(
@@ -329,7 +343,13 @@ class MappedRecording:
             whitened,
         )
         self._run(values, on, levels, arrays, full=False)
+        self._count_pass(about.integrations, 0.0)
         return _read_only(whitened.ravel())
+
+    def _count_pass(self, integrations: float, matrices: float) -> None:
+        """Count the work of a pass with given integration steps and work on matrices."""
+        steps = integrations + self._changes_between_rows
+        self.filtered.add_pass(steps, len(self.times), self.program.module.NQ, matrices)
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).
@@ -361,6 +381,8 @@ class MappedRecording:
         for _ in range(self.config.smoother_passes):
             keep = FilterHistory(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
+            integrations = integration_count(self.times, arrays.steps)
+            self._count_pass(integrations, COVARIANCE + DERIVATIVES + SMOOTHER)
             self.program.estimation_functions.smooth_states(
                 keep, gains, self.times, self._latent_force(force, levels), values, on
             )
@@ -459,11 +481,10 @@ class MappedRecording:
         Returns:
             Rms (NQ,) [N, N m], and rms (NQ,) at the first row.
         """
-        force = np.asarray(
-            levels.force
-            * inertia_with_added_mass(self.program, values, on)
-            / self.inertia_with_added_mass
-        )
+        arguments = self._vessel_arguments
+        arguments.write(values, on)
+        inertia = arguments.inertia_with_added_mass()
+        force = np.asarray(levels.force * inertia / self.inertia_with_added_mass)
         return force, np.maximum(force, levels.initial_force)
 
     def _run(
@@ -479,37 +500,33 @@ class MappedRecording:
         keep: FilterHistory | None = None,
     ) -> float:
         """Run the compiled filter, which fills or uses `arrays`; return the log likelihood."""
-        nq = self.program.module.NQ
+        own = self._filter_arguments
         sds = [levels.sensors[f] * self.noise_scale[f] for f in self.families]
-        noise = np.array([sd**2 for sd in sds])
-        covariance = self.initial_state_prior.covariance.copy()
-        for c, code in enumerate(self.codes):
-            if code < nq:
-                covariance[code, code] = noise[c]
         force, initial_force = self.latent_force_rms(values, on, levels)
-        for i in range(nq):
-            covariance[2 * nq + i, 2 * nq + i] = initial_force[i] ** 2
-            if covariance[nq + i, nq + i] == 0.0:
-                covariance[nq + i, nq + i] = 1.0
-        if rates is None:
-            rates = self.initial_state_prior.rates
+        own.write_variances(np.array(sds), initial_force)
         found = self.program.estimation_functions.kalman_filter(
-            self.times_and_commands,
-            Measurements(self.measured, self.codes, noise),
-            VesselNumbers(rigid_body_values(values), values, on),
+            own.inputs,
+            own.measurements,
+            self._vessel_arguments.numbers,
             self._latent_force(force, levels),
-            FilterStart(self.initial_state_prior.mean, covariance, rates),
+            own.start if rates is None else own.start_about(rates),
             PassOptions(self.largest_step, full, fresh, keep is not None),
             arrays,
-            keep or _no_history(),
+            keep or own.no_history,
         )
-        matrices = 0.0
-        if full:
-            matrices = COVARIANCE + DERIVATIVES if fresh else COVARIANCE
-        if keep is not None:
-            matrices += SMOOTHER
-        self.filtered.add_pass(self.times, arrays.steps, self._changes_between_rows, nq, matrices)
         return float(found)
+
+    @cached_property
+    def _vessel_arguments(self) -> VesselArguments:
+        return VesselArguments(self.program)
+
+    @cached_property
+    def _filter_arguments(self) -> FilterArguments:
+        prior = self.initial_state_prior
+        start = FilterStart(prior.mean, prior.covariance, prior.rates)
+        return FilterArguments(
+            self.program, self.times_and_commands, self.measured, self.codes, start
+        )
 
     @cached_property
     def _changes_between_rows(self) -> int:
@@ -532,13 +549,6 @@ def _key_of(values: Array, on: Array, levels: NoiseLevels, horizon: float = 0.0)
     numbers = (horizon, levels.time_constant, sorted(levels.sensors.items()))
     arrays = (values, np.asarray(on), levels.force, levels.initial_force, levels.white)
     return b"".join([repr(numbers).encode(), *(array.tobytes() for array in arrays)])
-
-
-def _no_history() -> FilterHistory:
-    """Placeholders for the arrays of a smoothing pass."""
-    return FilterHistory(
-        np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
-    )
 
 
 def _read_only(array: Array) -> Array:
@@ -595,14 +605,6 @@ def _rates_of_change(t: Array, y: Array) -> Array:
     gap = gap.clip(max=len(t) - 1)
     far = gap > np.arange(len(t))
     return np.asarray((y[gap] - y)[far] / (t[gap] - t)[far])
-
-
-def rigid_body_values(values: Array) -> Array:
-    """Return mass, mass centre and inertias of the hull from a vessel model's parameter values.
-
-    They are the last entries of the array.
-    """
-    return values[-len(BODY) :]
 
 
 def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
@@ -808,31 +810,6 @@ def hull_time_scales(
             largest_step = min(largest_step, float(step))
     decay_rate = float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max())
     return HullMotion(decay_rate, largest_step)
-
-
-def inertia_with_added_mass(program: Program, values: Array, on: Array) -> Array:
-    """Return the mass or moment of inertia (NQ,) with added mass of each degree of freedom.
-
-    The unit is kg or kg m^2.
-
-    Args:
-        program: Compiled effects of the vessel.
-        values: Parameter values of the vessel model.
-        on: (effects,) 1 for the effects that act, else 0.
-    """
-    code = program.estimation_functions
-    constants = np.zeros(code.K)
-    code.compute_mass_constants(rigid_body_values(values), values, on, constants)
-    diagonal = constants[-MASS_ENTRIES:][_places(tuple(program.vessel.dof))]
-    if code.CLOSED:  # the constants hold the inverse
-        diagonal = 1.0 / diagonal
-    return np.asarray(diagonal)
-
-
-@cache
-def _places(dof: tuple[str, ...]) -> list[int]:
-    """Places of degrees of freedom among all six, in the order of the filter."""
-    return [AXES.index(axis) for axis in AXES if axis in dof]
 
 
 def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:

@@ -13,7 +13,8 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.filter import BODY, FilterPass, MappedRecording, NoiseLevels
+from boatsim.diagnosis.filter import FilterPass, MappedRecording, NoiseLevels
+from boatsim.diagnosis.filter_arguments import BODY
 from boatsim.diagnosis.work import WorkCount
 from boatsim.errors import BadInput
 from boatsim.physics.base import (
@@ -489,6 +490,8 @@ class Problem:
 
         Effects of other groups have zero size; without them the filter repeats no work.
         """
+        if not any(parameter.group for parameter in free):
+            return on
         elsewhere, here = set[str](), set[str]()
         for parameter in free:
             if parameter.group:

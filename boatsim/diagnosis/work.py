@@ -17,26 +17,34 @@ CALL = 500  # work of one pass that does not depend on the rows
 MOST_PARTS = 1e4  # of the time between two rows, so that the count stays finite
 
 
+def integration_count(times: Array, steps: Array) -> float:
+    """Return the number of integration steps between the rows of a recording.
+
+    Args:
+        times: (N,) times of the rows [s].
+        steps: (N,) longest integration steps used before each row [s]; the first is not used.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a vessel that diverges
+        parts = np.ceil(np.diff(times) / steps[1:] - 1e-9)
+    return float(np.clip(np.nan_to_num(parts), 1.0, MOST_PARTS).sum())
+
+
 @dataclass
 class WorkCount:
     """Count of the computing work that was done: integration steps times degrees of freedom."""
 
     work: int = 0
 
-    def add_pass(self, times: Array, steps: Array, changes: int, dof: int, matrices: float) -> None:
+    def add_pass(self, integrations: float, rows: int, dof: int, matrices: float) -> None:
         """Count one pass of the filter over a recording.
 
         Args:
-            times: (N,) times of the rows [s].
-            steps: (N,) longest integration steps used before each row [s]; the first is not used.
-            changes: Number of changes of commands between the rows.
+            integrations: Integration steps of the pass.
+            rows: Rows of the recording.
             dof: Degrees of freedom.
             matrices: Work on matrices per row and degree of freedom squared, in integration steps.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):  # of a vessel that diverges
-            parts = np.ceil(np.diff(times) / steps[1:] - 1e-9)
-        integrated = float(np.clip(np.nan_to_num(parts), 1.0, MOST_PARTS).sum()) + changes
-        self.work += CALL + round(dof * integrated + matrices * dof * dof * len(times))
+        self.work += CALL + round(dof * integrations + matrices * dof * dof * rows)
 
     def add_scores(self, terms: int, rows: int, dof: int) -> None:
         """Count the approximate evidence of terms of a description, over one recording.

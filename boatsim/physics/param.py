@@ -4,6 +4,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import field, fields
+from functools import cache
 from typing import NamedTuple, Self, TypeVar
 
 from boatsim.arguments import shown
@@ -261,6 +262,16 @@ def _is_table_of_numbers(value: object) -> bool:
     return all(type(one) in (int, float) and abs(one) <= LARGEST_FLOAT for one in value.values())
 
 
+@cache
+def _declared_parameters(cls: type) -> dict[str, Param]:
+    """Declarations of the checked parameters of a class by name, in order."""
+    params = {}
+    for declared in fields(cls):
+        if "param" in declared.metadata:
+            params[declared.name] = declared.metadata["param"]
+    return params
+
+
 class CheckedParameters:
     """Base class of settings that checks the bounds of `param` fields.
 
@@ -270,11 +281,8 @@ class CheckedParameters:
     @classmethod
     def params(cls) -> dict[str, Param]:
         """Return the declaration (`Param`) of every checked parameter by name, in order."""
-        params = {}
-        for declared in fields(cls):  # type: ignore[arg-type]
-            if "param" in declared.metadata:
-                params[declared.name] = declared.metadata["param"]
-        return params
+        declaring: type = cls
+        return dict(_declared_parameters(declaring))
 
     @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:

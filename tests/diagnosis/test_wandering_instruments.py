@@ -14,9 +14,9 @@ from boatsim.diagnosis.filter import (
     InitialState,
     MappedRecording,
     NoiseLevels,
-    inertia_with_added_mass,
     map_recording,
 )
+from boatsim.diagnosis.filter_arguments import inertia_with_added_mass
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import first_invalid_fact

@@ -11,8 +11,8 @@ from boatsim.diagnosis.filter import (
     MappedRecording,
     command_changes,
     dof_in_state_order,
-    rigid_body_values,
 )
+from boatsim.diagnosis.filter_arguments import rigid_body_values
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, VesselNumbers

@@ -6,7 +6,7 @@ import numpy as np
 import tomlkit
 from tomlkit.items import Table
 
-from boatsim.diagnosis.filter import BODY
+from boatsim.diagnosis.filter_arguments import BODY
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report.parameters import reported_sd
 

@@ -184,10 +184,9 @@ class Effect(CheckedParameters):
 
         A parameter without a value is 0.
         """
-        values = [0.0] * len(type(self).params())
-        for i, name in enumerate(type(self).params()):
-            if self.has_value(name):
-                values[i] = float(getattr(self, name))
+        values = []
+        for name in type(self).params():
+            values.append(float(getattr(self, name)) if self.has_value(name) else 0.0)
         return type(self).values_type()(*values)
 
     def has_value(self, name: str) -> bool:

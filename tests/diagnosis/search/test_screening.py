@@ -36,7 +36,7 @@ def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_al
         rng.standard_normal(50),
     )
     nothing = np.zeros((1, 1))
-    passes = FilterPasses((FilterPass(0.0, white, nothing, nothing, nothing, nothing),))
+    passes = FilterPasses((FilterPass(0.0, white, nothing, nothing, nothing, nothing, 0.0),))
     inverse = np.linalg.inv(np.eye(4) + known.T @ known)
     begin = Linearisation(known, np.zeros(4), 0.0, passes, inverse)
 
