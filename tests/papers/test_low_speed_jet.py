@@ -290,13 +290,12 @@ def test_constant_push_leaves_the_pd_its_offset_and_l1_what_its_adaptation_forge
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sea", ["4p5", "2p5", "1p5"])
-def test_l1_takes_the_mean_error_out_in_waves_and_no_rms(sea: str) -> None:
+@pytest.mark.parametrize(("sea", "seeds"), [("4p5", 2), ("2p5", 2), ("1p5", 6)])
+def test_l1_takes_the_mean_error_out_in_waves_and_no_rms(sea: str, seeds: int) -> None:
+    """The mean error in the slowest waves, 1.5 rad/s, varies most between seeds."""
     pd, filtered, l1 = (f"waves_{sea}_{n}" for n in ("pd", "filter", "l1"))
-    assert (
-        mean_of(f"jet_ski/low_{l1}")["psi_mean"] / mean_of(f"jet_ski/low_{filtered}")["psi_mean"]
-        < 0.1
-    )
+    means = [mean_of(f"jet_ski/low_{name}", seeds)["psi_mean"] for name in (l1, filtered)]
+    assert means[0] / means[1] < 0.1
     assert 0.95 < value(l1, "psi_rms") / value(filtered, "psi_rms") < 1.2
     assert 1.05 < value(l1, "steering_rms") / value(filtered, "steering_rms") < 1.35
     assert value(filtered, "steering_rms") < value(pd, "steering_rms")
