@@ -81,8 +81,6 @@ class NoiseLevels:
     # (NQ,) spectral density of the part of a measured force that does not move the hull, in
     # addition to the noise that its samples show [N^2 s, N^2 m^2 s]; empty: no force is measured
     white: Array = field(default_factory=lambda: np.zeros(0))
-    # whether the rms of the latent force follows a rule, as neither recording nor vessel state it
-    assumed: bool = False
 
     def with_other_correlation_time(self, seconds: float) -> "NoiseLevels":
         """Return noise levels with another correlation time of the latent (unmodelled) force.
@@ -982,6 +980,4 @@ def prior_noise_levels(
     if measured_force_mask(vessel, axes).any():
         share = config.load.input_noise_time * time_constant
         white = np.where(measured_force_mask(vessel, axes), share * force**2, 0.0)
-    initial = config.filter.initial_force * force
-    assumed = not specified and not vessel.diagnosis.ambient
-    return NoiseLevels(force, time_constant, noise, initial, white, assumed)
+    return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force, white)

@@ -83,7 +83,8 @@ class Consistency:
         axes: Axes along which it acts; all for an error of an instrument.
         alternative_gain: Evidence of the best single-term force along these axes in its place
             [nats], at the level of the latent force that is fitted without the effect.
-        prior_distance: Largest distance of its parameters from zero effect, in prior sds.
+        prior_distance: Largest distance of its parameters from zero effect, in prior sds; 0 for an
+            effect of the surroundings, whose prior is a usual level and no limit of the plausible.
         at_bound: Whether a parameter is at a bound of its range.
     """
 
@@ -168,7 +169,7 @@ def effect_consistency(
             unseen_gain,
             axes,
             find_structure(problem, without, without.levels).gain_along(axes),
-            _prior_distance(best, name),
+            _prior_distance(problem, best, name),
             _at_bound(best, name),
         )
     return found
@@ -375,8 +376,13 @@ def _row_likelihood(problem: Problem, fit: Fit) -> Array:
     return np.concatenate(found)
 
 
-def _prior_distance(fit: Fit, name: str) -> float:
-    """Return the largest distance of an effect's parameters from zero effect, in prior sds."""
+def _prior_distance(problem: Problem, fit: Fit, name: str) -> float:
+    """Return the largest distance of an effect's parameters from zero effect, in prior sds.
+
+    It is 0 for an effect of the surroundings.
+    """
+    if type(problem.candidates[name]).of_surroundings:
+        return 0.0
     size = _size(fit, name)
     return float(np.max(np.abs(size))) if len(size) else 0.0
 

@@ -13,6 +13,7 @@ from boatsim.diagnosis.open_set.confirmation import (
 from boatsim.diagnosis.open_set.consistency import Consistency, effect_consistency
 from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, unknown_cause_indicators
 from boatsim.diagnosis.open_set.probability import logistic_features, probability_of_true_cause
+from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.evidence import required_gain, unknown_cause_threshold
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
@@ -75,7 +76,8 @@ def decide(
     An effect that is probably a stand-in for another cause, or that held-out recordings do not
     confirm, is not stated as a cause. It stays in the patched vessel, because it describes the
     data, and if it explains much the cause is reported as unknown. So it is if held-out recordings
-    require a force that no identified effect gives.
+    require a force that no identified effect gives. An effect that only refines an estimated number
+    of the vessel file is not a cause, so that held-out recordings alone decide about it.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -96,8 +98,9 @@ def decide(
     for judged in judgements:
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
+        refines = refines_estimated_number(problem, judged.effect.name)
         probable = judged.probability >= config.decide.least_probability
-        if probable and judged.outcome != "unconfirmed":
+        if (probable or refines) and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)

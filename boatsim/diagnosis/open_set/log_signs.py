@@ -8,6 +8,7 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure_held_out
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.ranking import Ranking
@@ -26,14 +27,13 @@ class LogSigns:
         structure_gain: Evidence of the largest dependence of the remaining force on motion,
             commands, place or time [nats].
         effects_gain: Evidence that all identified effects gain together [nats].
-        effects: Number of identified effects.
+        effects: Number of identified effects. Those that only refine an estimated number of the
+            vessel file are not counted: every rough file has several.
         held_out_unexplained: The same share as `unexplained` on held-out recordings, to which no
             parameter was fitted.
         held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
             beyond what the uncertainty of the parameters explains.
         held_out_structured: Whether that dependence is significant.
-        level_assumed: Whether the disturbance level is that of a rule: neither the recordings nor
-            the vessel file state it.
     """
 
     coefficient_shift: float
@@ -45,7 +45,6 @@ class LogSigns:
     held_out_unexplained: float = 0.0
     held_out_structure: float = 0.0
     held_out_structured: bool = False
-    level_assumed: bool = False
 
 
 NO_STRUCTURE = Structure("", "", 0.0, 1.0, 0, False)
@@ -74,12 +73,16 @@ def unknown_cause_indicators(
         float(ranking.left_over / threshold),
         float(ranking.structure.gain),
         float(best.evidence - ranking.recalibrated.evidence),
-        len(ranking.named),
+        _count_effects(problem, ranking),
         remains / threshold,
         structure.gain,
         structure.significant,
-        problem.ambient.assumed,
     )
+
+
+def _count_effects(problem: Problem, ranking: Ranking) -> int:
+    """Number of identified effects that do not only refine an estimated number of the vessel."""
+    return sum(not refines_estimated_number(problem, one.name) for one in ranking.named)
 
 
 def _of_held_out(

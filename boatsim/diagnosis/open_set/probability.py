@@ -46,9 +46,6 @@ def logistic_features(
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.law_error)
     alternative = consistency.alternative_gain / max(effect.gain, 1.0)
     structure = log_signs.structure_gain / max(log_signs.effects_gain, 1.0)
-    distance = consistency.prior_distance
-    if stochastic:  # the prior of a disturbance is a usual level, not what is plausible
-        distance = 0.0
     held_out_gain = log(max(consistency.held_out_gain, LEAST_GAIN))
     return {
         "held_out_gain": held_out_gain,
@@ -59,7 +56,7 @@ def logistic_features(
         "unexplained": _within(log_signs.unexplained, 0.0, 4.0),
         "structure": _within(structure, 0.0, 1.0),
         "alternative": _within(alternative, 0.0, 2.0),
-        "prior_distance": log1p(distance),
+        "prior_distance": log1p(consistency.prior_distance),
         "at_bound": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),
         "stochastic_gain": float(stochastic) * held_out_gain,

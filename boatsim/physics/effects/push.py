@@ -77,6 +77,7 @@ class Push(Force):
         "arm": "l",
         "heel_arm": "l_h",
     }
+    of_surroundings: ClassVar[bool] = True
     words: ClassVar[str] = "an external force acts on the hull during a time interval"
     shown_by: ClassVar[str] = "holding course and speed"
     law: ClassVar = law

@@ -42,6 +42,7 @@ class Slope(Force):
     symbols: ClassVar = {"north": "a", "east": "b", "mass": "m"}
     needs: ClassVar = ("surge", "sway")
     required_facts: ClassVar = {"no_water": True}
+    of_surroundings: ClassVar[bool] = True
     words: ClassVar[str] = "the surface is not level, and the weight of the craft pulls it downhill"
     shown_by: ClassVar[str] = "floating without thrust"
     source: ClassVar[str] = "weight on an inclined plane"

@@ -64,6 +64,7 @@ class Tether(Force):
     symbols: ClassVar = {"tension": "T_0", "stiffness": "k", "length": "l", "drag": "c", "at": "a"}
     ruled_out_by: ClassVar = {"moored": (False,)}
     needs: ClassVar = ("surge", "sway")
+    of_surroundings: ClassVar[bool] = True
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"
     shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
     tied_to: ClassVar[str] = "a fixed point"

@@ -51,6 +51,7 @@ class Wind(Force):
     }
     ruled_out_by: ClassVar = {"indoors": (True,)}
     needs: ClassVar = ("surge", "sway")
+    of_surroundings: ClassVar[bool] = True
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = (

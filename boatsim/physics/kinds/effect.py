@@ -59,6 +59,8 @@ class Effect(CheckedParameters):
     # group of numbers of a vessel that it refines, one of REFINED_GROUPS: where a vessel file calls
     # that group estimated, the effect is a better value of a number and no missing physics
     refines: ClassVar[str] = ""
+    # whether it acts from the surroundings, as wind does: the vessel does not limit its size
+    of_surroundings: ClassVar[bool] = False
     # parameters of its strength, zero if absent; empty: all fitted parameters
     strength: ClassVar[tuple[str, ...]] = ()
     # parameters that limit a quantity: the effect is absent at an infinite value of them

@@ -26,6 +26,7 @@ class RandomForce(Force):
     """
 
     random: ClassVar[bool] = True
+    of_surroundings: ClassVar[bool] = True
     parts: ClassVar = (OSCILLATION,)
     laws: ClassVar[tuple[str, ...]] = ("law", "oscillating_force")
     oscillating_force: ClassVar[Callable[..., OscillatingForce]]
