@@ -8,7 +8,6 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure_held_out
 from boatsim.diagnosis.noise_levels import fit_noise
-from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.ranking import Ranking
@@ -27,8 +26,7 @@ class LogSigns:
         structure_gain: Evidence of the largest dependence of the remaining force on motion,
             commands, place or time [nats].
         effects_gain: Evidence that all identified effects gain together [nats].
-        effects: Number of identified effects. Those that only refine an estimated number of the
-            vessel file are not counted: every rough file has several.
+        effects: Number of identified effects.
         held_out_unexplained: The same share as `unexplained` on held-out recordings, to which no
             parameter was fitted.
         held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
@@ -73,16 +71,11 @@ def unknown_cause_indicators(
         float(ranking.left_over / threshold),
         float(ranking.structure.gain),
         float(best.evidence - ranking.recalibrated.evidence),
-        _count_effects(problem, ranking),
+        len(ranking.named),
         remains / threshold,
         structure.gain,
         structure.significant,
     )
-
-
-def _count_effects(problem: Problem, ranking: Ranking) -> int:
-    """Number of identified effects that do not only refine an estimated number of the vessel."""
-    return sum(not refines_estimated_number(problem, one.name) for one in ranking.named)
 
 
 def _of_held_out(
