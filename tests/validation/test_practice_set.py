@@ -2,12 +2,14 @@
 oracle is sound."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from boatsim.diagnosis.loading import open_recording
+from validation.calibration.campaign import Job, causes_of
 from validation.practice import hulls
 from validation.practice.boats import BOATS
 from validation.practice.make import Trial, evidence_gains, make_trial, simulate_trial, trials
@@ -73,3 +75,27 @@ def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
         gains[0] == pytest.approx(0.0, abs=1e-3)
         and 1.0 < gains[1] < gains[2] < 4.0 * gains[1] + 1.0
     )
+
+
+def test_a_stronger_disturbance_pushes_more_and_its_level_may_be_kept_back(tmp_path: Path) -> None:
+    rough = replace(CHEAP, disturbance=3.0, level_stated=False)
+    assert rough.nominal().ambient() == pytest.approx(3.0 * CHEAP.nominal().ambient())
+    for trial in (CHEAP, rough):
+        make_trial(trial, 3, tmp_path)
+        notes = (tmp_path / trial.name / "recording.toml").read_text(encoding="utf-8")
+        assert ("[ambient]" in notes) == trial.level_stated
+
+
+def test_causes_of_the_background_are_outside_the_library_and_no_causes_of_the_answer() -> None:
+    kinds = set()
+    for number in range(1, 60):
+        job = Job(20, number, unstated=True)
+        trial, stated = job.trial(), replace(job, unstated=False).trial()
+        main = len(trial.makers) - trial.background
+        assert trial.makers[:main] == stated.makers
+        assert all(trial.strange[main:]) and trial.strange[:main] == stated.strange
+        kinds.add(trial.background)
+        effects = [{"name": maker.__name__} for maker in trial.makers]
+        names = causes_of({"effects": effects}, trial.background)
+        assert names == [maker.__name__ for maker in stated.makers]
+    assert kinds == {0, 1, 2}
