@@ -2,6 +2,7 @@
 
 A diagnosis runs thousands of passes over the same recording. Their small arrays have fixed
 addresses here, which are looked up once, so that a pass costs little more than its compiled code.
+Two threads must not filter the same recording at the same time.
 """
 
 from typing import Any
