@@ -602,7 +602,9 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
     allowed = allowed_empty_rows(columns)
     first: list[tuple[int, str]] = []
     for name, values in columns.items():
-        unusable = ~(np.abs(values) < HUGE) & ~allowed.get(name, False)
+        unusable = ~(np.abs(values) < HUGE)
+        if name in allowed:
+            unusable &= ~allowed[name]
         if unusable.any():
             first.append((int(np.argmax(unusable)), name))
     if first:
