@@ -24,7 +24,7 @@ make_venv() {
 
 [ -x .venv/bin/pip ] && fits .venv/bin/python || make_venv
 say "$(.venv/bin/python --version); installing what requirements.lock states: some minutes the first time, seconds later"
-# Without --compile: Python compiles the modules that are used at their first import.
+# --no-compile: Python compiles a module at its first import, and most of them are never imported.
 .venv/bin/python -m pip install --quiet --no-compile --progress-bar on --disable-pip-version-check --requirement requirements.lock
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
 say "ready: .venv/bin/boatsim"

@@ -33,10 +33,10 @@ def test_few_names_leave_the_weights_in_use() -> None:
 def test_only_weights_of_new_signs_change_much() -> None:
     names = ["held_out_gain", "structure", "effects"]
     prior = weight_prior(names, ["structure"])
-    X, right = sample(300)
+    X, right = sample(100)
     _, weights = fit_weights(X, right, prior)
     moved = np.abs(weights - prior.mean) * X.std(axis=0)
-    assert moved[1] > 3.0 * max(moved[0], moved[2]) > 0.0
+    assert moved[1] > 5.0 * max(moved[0], moved[2]) > 0.0
 
 
 def test_the_cross_validated_probability_of_a_trial_does_not_use_that_trial() -> None:

@@ -116,7 +116,8 @@ class ConsistencyEntry(TypedDict):
     held_out_gain: float  # [nats]
     axes: list[str]  # along which it acts
     alternative_gain: float  # [nats] of the best single-term force along them in its place
-    prior_distance: float  # largest distance from zero effect, in prior sds
+    # largest distance from zero effect, in prior sds; 0 for an effect of the surroundings
+    prior_distance: float
     at_bound: bool
 
 
