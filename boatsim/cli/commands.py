@@ -882,6 +882,13 @@ def new(
     length: Annotated[float, typer.Option(metavar="M", help="Waterline length [m].")],
     beam: Annotated[float, typer.Option(metavar="M", help="Overall beam [m].")],
     mass: Annotated[float, typer.Option(metavar="KG", help="Mass including payload [kg].")],
+    mass_uncertainty: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SHARE",
+            help="Relative standard deviation of the mass, 0 for a weighed boat [default: 0.1].",
+        ),
+    ] = None,
     thruster: Annotated[
         list[str] | None,
         typer.Option(
@@ -993,6 +1000,7 @@ def new(
         helm=helm,
         balance=balance,
         depth=depth,
+        mass_uncertainty=mass_uncertainty,
     )
     main_particulars = parse_particulars(folder.resolve().name, length, beam, mass, options)
     return create_boat(folder, main_particulars, from_log or [], force)

@@ -1537,6 +1537,14 @@ class DecideConfig:
         0.0,
         1.0,
     )
+    refined_spreads: float = setting(
+        3.0,
+        "1",
+        "Standard deviations, those of the file's estimate and of the fit together, up to which a "
+        "load is a better value of an estimated mass; a larger one is missing physics. Of normally "
+        "distributed errors 0.3 % are larger.",
+        0.0,
+    )
     unexplained_share: float = setting(
         0.25,
         "1",

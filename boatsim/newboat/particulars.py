@@ -13,6 +13,9 @@ from boatsim.physics.estimate.base import HullParticulars
 from boatsim.physics.estimate.displacement import hull_particulars
 
 MAX_ANGLE = 0.7  # [rad] 40 deg, the usual limit of rudders and outboards
+# Relative standard deviation of a mass that was not weighed: assumed, as crew, fuel and gear of
+# a small boat change from day to day
+MASS_SD = 0.1
 NAME = re.compile(r"[A-Za-z0-9][\w.+-]{0,59}")
 
 
@@ -99,6 +102,7 @@ class Particulars:
         mass_centre: Mass centre ahead of the transom [m], None if unknown.
         depth: Depth of the water [m], None for deep water.
         breadth_given: Whether the owner gave the breadth of one hull.
+        mass_sd: Relative standard deviation of the mass; 0 for a weighed boat.
     """
 
     name: str
@@ -113,6 +117,7 @@ class Particulars:
     mass_centre: float | None = None
     depth: float | None = None
     breadth_given: bool = False
+    mass_sd: float = 0.0
 
     @property
     def mass_centre_from_transom(self) -> float:
@@ -181,6 +186,8 @@ class Options:
         helm: Range and rate of the steering, "DEG[,DEG_PER_S]".
         balance: Mass centre ahead of the transom [m].
         depth: Depth of the water [m].
+        mass_uncertainty: Relative standard deviation of the mass, 0 for a weighed boat; None for
+            the usual one.
     """
 
     thrusters: Sequence[str] = ()
@@ -197,6 +204,7 @@ class Options:
     helm: str | None = None
     balance: float | None = None
     depth: float | None = None
+    mass_uncertainty: float | None = None
 
 
 def parse_particulars(
@@ -240,7 +248,17 @@ def parse_particulars(
         options.balance,
         options.depth,
         options.hull_beam is not None,
+        _parse_mass_uncertainty(options.mass_uncertainty),
     )
+
+
+def _parse_mass_uncertainty(given: float | None) -> float:
+    """Relative standard deviation of the mass. Raises BadInput."""
+    if given is None:
+        return MASS_SD
+    if not 0.0 <= given <= 1.0:  # false for a value that is not a number
+        raise BadInput(f"--mass-uncertainty {given:g}; allowed is 0 (a weighed boat) to 1")
+    return given
 
 
 def _check_sizes(length: float, beam: float, mass: float, options: Options) -> None:

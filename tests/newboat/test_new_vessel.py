@@ -156,7 +156,19 @@ def test_the_file_states_which_numbers_are_estimates(name: str, tmp_path: Path) 
     estimated = vessel.load_vessel(str(made(tmp_path / name, BOATS[name]))).estimated
     assert {"damping", "thrust", "added_mass", "lag"} <= set(estimated)
     assert ("mass_centre" in estimated) == ("--balance" not in BOATS[name])
-    assert "body.yaw_inertia" in estimated and "body.mass" not in estimated
+    assert "body.yaw_inertia" in estimated and estimated["body.mass"] == 0.1
+    balanced = "--balance" in BOATS[name]
+    assert ("position_frame_error.forward" in estimated) != balanced
+
+
+@pytest.mark.parametrize(("given", "sd"), [("0", None), ("0.02", 0.02)])
+def test_a_mass_that_was_weighed_is_no_estimate(
+    given: str, sd: float | None, tmp_path: Path
+) -> None:
+    options = f"{BOATS['outboard']} --mass-uncertainty {given}"
+    assert (
+        vessel.load_vessel(str(made(tmp_path / "boat", options))).estimated.get("body.mass") == sd
+    )
 
 
 def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from boatsim.physics import content, vessel
 from boatsim.physics.base import Effect
 from boatsim.physics.kinds.effect import REFINED_GROUPS
 from boatsim.physics.vessel import sd_of_corrected_estimates
+from boatsim.physics.vessel.schema import Body
 
 TABLE = """
 [estimated]
@@ -64,6 +65,9 @@ def test_every_effect_refines_a_known_group_or_none(name: str) -> None:
     kind: type[Effect] = content.load_class("effect", name)
     assert kind.refines in ("", *REFINED_GROUPS)
     assert not (kind.refines and kind.kind == "measurement")
+    for parameter, number in kind.adds_to.items():
+        owner, key = number.split(".")
+        assert parameter in kind.params() and owner == "body" and key in Body.model_fields
 
 
 @pytest.mark.parametrize(
@@ -75,6 +79,9 @@ def test_every_effect_refines_a_known_group_or_none(name: str) -> None:
         ("damping = 0.5", "quadratic_damping", 0.5),
         ("damping = 0.5", "damping_error", 0.5),
         ("inertia = 0.3", "payload", 0.3),
+        ('"body.mass" = 0.1', "extra_mass", 0.1),
+        ('"body.mass" = 0.1\n"body.yaw_inertia" = 0.3\n"body.roll_inertia" = 0.2', "payload", 0.3),
+        ('"position_frame_error.forward" = 1.0', "position_frame_error", 1.0),
         # the mass was weighed, only an inertia is an estimate
         ('"body.yaw_inertia" = 0.3', "payload", None),
         ('"body.yaw_inertia" = 0.3', "extra_mass", None),

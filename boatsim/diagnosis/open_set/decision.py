@@ -98,7 +98,7 @@ def decide(
     for judged in judgements:
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
-        refines = refines_estimated_number(problem, judged.effect.name)
+        refines = refines_estimated_number(problem, ranking.best, judged.effect.name)
         probable = judged.probability >= config.decide.least_probability
         if (probable or refines) and judged.outcome != "unconfirmed":
             named.append(stated)

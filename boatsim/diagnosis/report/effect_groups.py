@@ -6,12 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.diagnosis.candidates import FURTHER
+from boatsim.diagnosis.open_set.refinement import (
+    number_without_addition,
+    refines_estimated_number,
+)
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
-from boatsim.physics.vessel import estimated_number_sd, sd_of_corrected_estimates
+from boatsim.physics.vessel import estimated_number_sd
 from boatsim.view.formatting import format_parameter, join_words, name_in_words
 
 BODY_UNITS = {"mass": "kg"}  # all other numbers of the body are inertias
@@ -67,14 +71,13 @@ def classify_effects(
         best: The fit with all identified effects.
         entries: Their entries, by the name of the candidate.
     """
-    vessel = problem.program.vessel
     groups = EffectGroups([], [], [])
     changed = set[tuple[str, str]]()
     for name, entry in entries.items():
         effect = problem.candidates[name]
         if not _has_known_size(problem, best, effect):
             groups.also_possible.append(_possible(best, effect, entry))
-        elif sd_of_corrected_estimates(effect, vessel, vessel.estimated) is None:
+        elif not refines_estimated_number(problem, best, name):
             groups.effects.append(entry)
         else:
             for number in _refined_numbers(problem, best, effect):
@@ -164,6 +167,11 @@ def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _
     sd = reported_sd(best, effect, name, problem.config.answer)
     param = type(effect).params()[name]
     words = _words_of_parameter(effect, name, len(_strengths(best, effect)))
+    number = type(effect).adds_to.get(name, "")
+    before = number_without_addition(problem, effect, name)
+    if before is not None:
+        words = name_in_words(number.split(".")[1])
+        return _Number(words, before, before + value, sd, param.unit)
     for change in _changes(problem, effect):
         if change.parameter != name:
             continue

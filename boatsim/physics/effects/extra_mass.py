@@ -85,6 +85,7 @@ class ExtraMass(Inertia, Force):
     ruled_out_by: ClassVar = {"weighed": (True,)}
     words: ClassVar[str] = "the boat carries a mass that the model does not contain"
     refines: ClassVar[str] = "inertia"
+    adds_to: ClassVar = {"mass": "body.mass"}
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
@@ -138,6 +139,7 @@ class Payload(CoefficientRelease):
         "the boat is heavier than specified, or all its forces are smaller by the same factor"
     )
     refines: ClassVar[str] = "inertia"
+    adds_to: ClassVar = {"mass": "body.mass"}
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source
     strength: ClassVar = ("mass",)

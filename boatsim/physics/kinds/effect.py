@@ -59,6 +59,9 @@ class Effect(CheckedParameters):
     # group of numbers of a vessel that it refines, one of REFINED_GROUPS: where a vessel file calls
     # that group estimated, the effect is a better value of a number and no missing physics
     refines: ClassVar[str] = ""
+    # parameter -> number of the vessel to which it adds, as the mass of a load to "body.mass": if a
+    # vessel file calls that number estimated, a load within its uncertainty is a better value of it
+    adds_to: ClassVar[Mapping[str, str]] = {}
     # whether it acts from the surroundings, as wind does: the vessel does not limit its size
     of_surroundings: ClassVar[bool] = False
     # parameters of its strength, zero if absent; empty: all fitted parameters

@@ -83,6 +83,10 @@ def sd_of_corrected_estimates(
             sd = estimated.get(f"{type(effect).type_name()}.{name}")
             if param.fit and sd is not None:
                 return sd
+        for number in type(effect).adds_to.values():
+            sd = estimated_number_sd(*number.split("."), vessel, estimated)
+            if sd is not None:
+                return sd
     return estimated.get(type(effect).refines)
 
 

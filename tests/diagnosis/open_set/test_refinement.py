@@ -52,7 +52,8 @@ def test_an_effect_that_refines_an_estimate_needs_no_probability(
 ) -> None:
     found = decided(quadratic, vessel)
     assert [one.effect.name for one in found.judgements] == ["quadratic_damping"]
-    assert refines_estimated_number(found.problem, "quadratic_damping") == refines
+    best = found.ranking.best
+    assert refines_estimated_number(found.problem, best, "quadratic_damping") == refines
     named = [one.name for one in found.ranking.named]
     doubtful = [one.name for one in found.ranking.doubtful]
     assert (named, doubtful) == (

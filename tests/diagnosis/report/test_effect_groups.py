@@ -24,7 +24,8 @@ from tests.diagnosis.report.test_page import planar
 ESTIMATED = (
     "[estimated]\ndamping = 1.0\nthrust = 0.3\nadded_mass = 0.4\nlag = 1.0\nmass_centre = 1.0\n"
 )
-FITTED = {  # value and standard deviation by effect and parameter
+Fitted = Mapping[str, Mapping[str, tuple[float, float]]]
+FITTED: Fitted = {  # value and standard deviation by effect and parameter
     "thrust_lag": {"time_constant": (0.31, 0.02)},
     "added_mass_error": {
         "surge_factor": (1.0, 0.3),
@@ -41,32 +42,35 @@ def groups_of(
     text: str,
     folder: Path,
     coefficients: Mapping[tuple[str, str], tuple[float, float]] | None = None,
+    fitted: Fitted = FITTED,
 ) -> EffectGroups:
-    """The effect groups of a fit that is made up: all effects of FITTED, and factors of coefficients."""
+    """The effect groups of a fit that is made up: effects, and factors of coefficients."""
     boat = vessel.load_vessel(str(boats.written(folder, "test_boat", boats.PLANAR + text)))
     program, _ = diagnosis_program(boat)
     mapped = unmeasured(program)
     levels = NoiseLevels(np.ones(3), 1.0, {"heading_sd_rad": 0.01})
     problem = Problem([mapped], levels, {"damping": 1.0, "thrust": 0.3})
-    free = problem.free_parameters(tuple(FITTED))
+    free = problem.free_parameters(tuple(fitted))
     theta, sds = [], []
     for f in free:
         value = (coefficients or {}).get((f.effect, f.name), (1.0, 0.01))
         if not f.relative:
-            value = FITTED[f.effect][f.name]
+            value = fitted[f.effect][f.name]
         theta.append(value[0])
         sds.append(value[1])
-    best = Fit(tuple(FITTED), free, np.array(theta), np.diag(np.square(sds)), levels, -1.0)
+    best = Fit(tuple(fitted), free, np.array(theta), np.diag(np.square(sds)), levels, -1.0)
     entries = {}
-    for name in FITTED:
-        entries[name] = entry_of(problem, best, name)
+    for name, values in fitted.items():
+        entries[name] = entry_of(problem, best, name, values)
     return classify_effects(problem, best, entries)
 
 
-def entry_of(problem: Problem, best: Fit, name: str) -> EffectEntry:
+def entry_of(
+    problem: Problem, best: Fit, name: str, values: Mapping[str, tuple[float, float]]
+) -> EffectEntry:
     effect = problem.candidates[name]
     parameters = {}
-    for key, (value, _) in FITTED[name].items():
+    for key, (value, _) in values.items():
         unit = type(effect).params()[key].unit
         sd = reported_sd(best, effect, key, problem.config.answer)
         parameters[parameter_key(key, unit)] = {"value": value, "sd": sd, "unit": unit}
@@ -122,6 +126,44 @@ def test_a_number_alone_may_be_an_estimate(tmp_path: Path) -> None:
     groups = groups_of('[estimated]\n"thrust_lag.time_constant" = 1.0\n', tmp_path)
     assert [e["number"] for e in groups.refined] == ["thrust lag"]
     assert "added_mass_error" in [e["name"] for e in groups.effects]
+
+
+WEIGHED, STATED = "", '[estimated]\n"body.mass" = 0.1\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "spreads", "sd", "refined"),
+    [
+        pytest.param(STATED, 2.0, 0.01, True, id="within the spread of the owner's mass"),
+        pytest.param(STATED, 4.0, 0.01, False, id="a load, for it is much larger"),
+        pytest.param(STATED, 4.0, 0.2, True, id="not clearly larger"),
+        pytest.param(WEIGHED, 2.0, 0.01, False, id="a load, for the boat was weighed"),
+    ],
+)
+def test_a_load_is_missing_physics_beyond_the_uncertainty_of_the_mass(
+    text: str, spreads: float, sd: float, refined: bool, tmp_path: Path
+) -> None:
+    mass = vessel.load_vessel(str(boats.written(tmp_path, "as_it_is", boats.PLANAR))).body.mass
+    load = {"mass": (0.1 * spreads * mass, sd * mass), "x": (0.1, 0.01)}
+    groups = groups_of(text, tmp_path, fitted={"extra_mass": load})
+    if not refined:
+        assert [e["name"] for e in groups.effects] == ["extra_mass"] and not groups.refined
+        return
+    (entry,) = groups.refined
+    assert not groups.effects and (entry["number"], entry["unit"]) == ("mass", "kg")
+    assert (entry["before"], entry["after"]) == (mass, pytest.approx(mass * (1.0 + 0.1 * spreads)))
+
+
+def test_where_positions_are_recorded_is_a_refined_number_if_the_mass_centre_is_unknown(
+    tmp_path: Path,
+) -> None:
+    fitted = {"position_frame_error": {"forward": (0.12, 0.01), "starboard": (0.0, 0.01)}}
+    text = '[estimated]\n"position_frame_error.forward" = 1.0\n'
+    (entry,) = groups_of(text, tmp_path, fitted=fitted).refined
+    assert (entry["before"], entry["after"], entry["unit"]) == (0.0, 0.12, "m")
+    assert [e["name"] for e in groups_of("", tmp_path, fitted=fitted).effects] == [
+        "position_frame_error"
+    ]
 
 
 def test_the_verdict_and_the_report_have_the_refined_numbers_last(tmp_path: Path) -> None:
