@@ -39,7 +39,7 @@ from boatsim.physics.base import DriftingMeasurement, RandomForce
 from boatsim.physics.commands import clipped_recorded_commands
 from boatsim.physics.kernel.records import (
     FilterHistory,
-    FilterStart,
+    InitialState,
     Inputs,
     LatentForce,
     PassArrays,
@@ -92,20 +92,6 @@ class NoiseLevels:
         """
         force = self.force * np.sqrt(self.time_constant / seconds)
         return replace(self, force=force, time_constant=seconds)
-
-
-@dataclass(frozen=True)
-class InitialState:
-    """Prior mean and covariance of the Kalman filter's state at the first row of a recording.
-
-    The state holds the positions, their rates in earth axes and the latent forces, which are the
-    unknown forces that the filter estimates.
-    """
-
-    mean: Array  # (3 NQ,)
-    covariance: Array  # (3 NQ, 3 NQ) without sensor noise and latent forces
-    # (NQ,) earth-axes rates about which the first interval is linearised
-    rates: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -520,10 +506,12 @@ class MappedRecording:
 
     @cached_property
     def _filter_arguments(self) -> FilterArguments:
-        prior = self.initial_state_prior
-        start = FilterStart(prior.mean, prior.covariance, prior.rates)
         return FilterArguments(
-            self.program, self.times_and_commands, self.measured, self.codes, start
+            self.program,
+            self.times_and_commands,
+            self.measured,
+            self.codes,
+            self.initial_state_prior,
         )
 
     @cached_property

@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.physics.kernel.records import (
     FilterHistory,
-    FilterStart,
+    InitialState,
     Inputs,
     Measurements,
     VesselNumbers,
@@ -86,7 +86,7 @@ class FilterArguments:
         inputs: Inputs,
         measured: Array,
         codes: Array,
-        start: FilterStart,
+        start: InitialState,
     ) -> None:
         """Reserve the arrays.
 
@@ -110,7 +110,7 @@ class FilterArguments:
             code, FilterHistory(matrix, matrices, matrices, matrix)
         )
 
-    def start_about(self, rates: Array) -> FilterStart:
+    def start_about(self, rates: Array) -> InitialState:
         """Return the prior of the state, with other rates about which it is linearised.
 
         Args:

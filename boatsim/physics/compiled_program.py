@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from boatsim.physics.kernel.records import (
     FilterHistory,
-    FilterStart,
     FleetArrays,
+    InitialState,
     Inputs,
     LatentForce,
     Measurements,
@@ -190,7 +190,7 @@ class CompiledProgram(Protocol):
         measured: Measurements,
         model: VesselNumbers,
         force: LatentForce,
-        start: FilterStart,
+        start: InitialState,
         options: PassOptions,
         out: PassArrays,
         history: FilterHistory,

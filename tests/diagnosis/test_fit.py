@@ -98,7 +98,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
         covariances[0, program.module.NQ, program.module.NQ] ** 0.5,
     )
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
-    still = replace(laid.initial_state_prior, rates=np.zeros(4))
+    still = laid.initial_state_prior._replace(rates=np.zeros(4))
     laid = replace(laid, specified_initial=still)
     assert laid.smooth(laid.values, program.effect_switches(), prior_noise_levels(boat, [run]))[0][
         0, 4

@@ -11,7 +11,6 @@ from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.candidates import candidate_library, program_with_candidates
 from boatsim.diagnosis.filter import (
-    InitialState,
     MappedRecording,
     NoiseLevels,
     map_recording,
@@ -20,6 +19,7 @@ from boatsim.diagnosis.filter_arguments import inertia_with_added_mass
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import first_invalid_fact
+from boatsim.physics.kernel.records import InitialState
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 

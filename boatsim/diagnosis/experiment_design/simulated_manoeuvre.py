@@ -7,7 +7,6 @@ import numpy as np
 
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre
 from boatsim.diagnosis.filter import (
-    InitialState,
     MappedRecording,
     command_changes,
     dof_in_state_order,
@@ -15,7 +14,7 @@ from boatsim.diagnosis.filter import (
 from boatsim.diagnosis.filter_arguments import rigid_body_values
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
-from boatsim.physics.kernel.records import Inputs, VesselNumbers
+from boatsim.physics.kernel.records import InitialState, Inputs, VesselNumbers
 
 
 @dataclass(frozen=True)

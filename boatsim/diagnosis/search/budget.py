@@ -67,7 +67,7 @@ class SearchBudget:
 
     @property
     def skipped_work_statements(self) -> tuple[str, ...]:
-        """Clauses on the candidates and trials that were skipped because the budget was spent."""
+        """Clauses on the candidates and attempts that were skipped because the budget was spent."""
         found = []
         for how, number in self._omitted.items():
             candidates = "1 candidate was" if number == 1 else f"{number} candidates were"
@@ -77,7 +77,7 @@ class SearchBudget:
     def record_skipped_candidates(self, number: int, how: str) -> None:
         """Record that the search skipped some candidate effects because its budget is spent.
 
-        A later record of the same kind of trial replaces an earlier one.
+        A later record of the same kind of attempt replaces an earlier one.
 
         Args:
             number: Number of candidates; 0 records nothing.
@@ -92,8 +92,8 @@ class SearchBudget:
             raise BudgetSpentError
         self._omitted[how] = number
 
-    def record_skipped_trial(self, what: str) -> None:
-        """Record a trial that the search skipped because its budget is spent, as a clause in words.
+    def record_skipped_attempt(self, what: str) -> None:
+        """Record, as a clause in words, what the search did not try because its budget is spent.
 
         Args:
             what: A clause, such as "wind was not added".

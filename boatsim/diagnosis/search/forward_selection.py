@@ -56,7 +56,7 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
         name = max(tested, key=lambda n: tested[n].evidence)
         if sets.budget.is_spent:
             gain = tested[name].evidence - best.evidence
-            sets.budget.record_skipped_trial(_not_added(name, best, gain))
+            sets.budget.record_skipped_attempt(_not_added(name, best, gain))
             break
         converged = sets.refit_from_assumed_disturbance(sets.converged_fit(tested[name]))
         further = _without_unnecessary(sets, converged)

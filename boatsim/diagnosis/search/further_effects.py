@@ -48,7 +48,7 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     if room < 1 or unexplained_evidence(sets.problem, best) < threshold:
         return None
     if _ends(sets):
-        sets.budget.record_skipped_trial(NOT_SOUGHT)
+        sets.budget.record_skipped_attempt(NOT_SOUGHT)
         return None
     order = list[str]()
     least = best.evidence
@@ -61,7 +61,7 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     pairs: list[Fit] = []
     for single in singles:
         if _ends(sets):
-            sets.budget.record_skipped_trial(NOT_SOUGHT)
+            sets.budget.record_skipped_attempt(NOT_SOUGHT)
             break
         pairs += _additions(sets, single, order.copy(), least)
     return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)

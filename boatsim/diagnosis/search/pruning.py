@@ -60,7 +60,7 @@ def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, 
         better = _better_rivals(sets, best, named)
         further = best
         if better and sets.budget.is_spent:
-            sets.budget.record_skipped_trial(
+            sets.budget.record_skipped_attempt(
                 _not_replaced(best, max(better, key=lambda f: f.evidence))
             )
         elif better:

@@ -183,7 +183,7 @@ def _select(
     while True:
         if sets.budget.is_spent:
             if best.effects:
-                sets.budget.record_skipped_trial(NOT_EXAMINED)
+                sets.budget.record_skipped_attempt(NOT_EXAMINED)
             return best, named
         fewer = remove_dwarfed_effect(sets, best, held_out)
         if fewer is best:

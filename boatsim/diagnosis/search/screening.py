@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -274,6 +275,125 @@ def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Li
     return replace(found, evidence=base.evidence + gain)
 
 
+class _ScreeningPoint(NamedTuple):
+    """A point of a screening search: parameters, whitened prediction errors and score."""
+
+    theta: Array
+    white: Array
+    score: float
+
+
+class _ScreeningSearch:
+    """Gauss-Newton search from one start; the columns of what was free before are held."""
+
+    def __init__(self, problem: Problem, start: Fit, about: Linearisation) -> None:
+        self.problem, self.start, self.about = problem, start, about
+        self.on = problem.program.effect_switches(start.effects)
+        self.space = ParameterSpace(start.free)
+        self.middle = self.space.clip(start.theta)
+        added = len(start.free) - len(about.slope)
+        self.slope = np.append(about.slope, np.zeros(added))
+
+    def _score(self, x: Array, white: Array) -> float:
+        score = log_prior(self.start.free, x) - 0.5 * float(white @ white)
+        return score + float(self.slope @ ((x - self.middle) / self.space.sd))
+
+    def evaluate(self, x: Array) -> _ScreeningPoint:
+        """Return the point of these parameters."""
+        start = self.start
+        white = self.problem.whitened_errors(
+            start.free, x, self.on, start.levels, self.about.passes
+        )
+        with np.errstate(over="ignore"):  # the simulated boat may diverge
+            return _ScreeningPoint(x, white, self._score(x, white))
+
+    def evaluate_above(self, x: Array, least: float) -> _ScreeningPoint | None:
+        """Return the point of these parameters if its score is higher than `least`."""
+        start = self.start
+        most = log_prior(start.free, x) + float(self.slope @ ((x - self.middle) / self.space.sd))
+        most = 2.0 * (most - least)
+        with np.errstate(over="ignore", invalid="ignore"):
+            white = self.problem.whitened_errors_within(
+                start.free, x, self.on, start.levels, self.about.passes, most + MARGIN
+            )
+        if white is None:
+            return None
+        point = _ScreeningPoint(x, white, self._score(x, white))
+        return point if point.score > least else None
+
+    def _gradient(self, J: Array, at: _ScreeningPoint) -> Array:
+        return self.slope - J.T @ at.white - (at.theta - self.space.mean) / self.space.sd
+
+    def first_point(self) -> _ScreeningPoint:
+        """Return the start, or a point near it that the recordings do not exclude."""
+        point = self.evaluate(self.middle)
+        least = self.about.score - self.problem.config.select.screening_loss
+        if not point.score > least:
+            point = self._compensated(point)
+        own = np.arange(len(self.start.free)) >= len(self.about.slope)
+        halvings = self.problem.config.select.screening_halvings
+        for i in range(halvings):  # a start may be far too strong for this hull
+            if np.isfinite(point.score) and point.score > least:
+                break
+            theta = np.where(own, 0.5 * (point.theta + self.space.mean), point.theta)
+            better = self.evaluate_above(theta, least)
+            if better is None and i == halvings - 1:
+                better = self.evaluate(theta)
+            point = better or point._replace(theta=theta)
+        return point
+
+    def _compensated(self, point: _ScreeningPoint) -> _ScreeningPoint:
+        """Let the other parameters make up for the start: more mass for more thrust and damping."""
+        known = self.about.columns
+        J = np.hstack([known, np.zeros((len(known), len(self.start.free) - known.shape[1]))])
+        moved = self.space.damped_step(point.theta, J.T @ J, self._gradient(J, point), 0.0)
+        least = point.score if np.isfinite(point.score) else -LARGE
+        return self.evaluate_above(moved, least) or point
+
+    def step(
+        self, at: _ScreeningPoint, damping: float
+    ) -> tuple[_ScreeningPoint, Array, float, bool]:
+        """Take one damped Gauss-Newton step.
+
+        Args:
+            at: Where it begins.
+            damping: The first damping.
+
+        Returns:
+            The point reached, the normal matrix, the last damping, and whether the search ends.
+        """
+        problem, start, config = self.problem, self.start, self.problem.config.select
+        known = self.about.columns
+        own = jacobian(
+            problem,
+            start.free,
+            at.theta,
+            self.on,
+            start.levels,
+            self.about.passes,
+            at.white,
+            known.shape[1],
+        )
+        J = np.hstack([known, own])
+        A, g = J.T @ J, self._gradient(J, at)
+        for _ in range(config.screening_dampings):
+            theta = self.space.damped_step(at.theta, A, g, damping)
+            predicted = self.space.predicted_gain(J, g, at.theta, theta)
+            if (
+                predicted >= 0.0
+                and at.score + predicted < self.about.score + config.screening_promise
+            ):
+                # too little to follow: the prediction is accepted
+                return _ScreeningPoint(theta, at.white, at.score + predicted), A, damping, True
+            better = self.evaluate_above(theta, at.score)
+            if better is not None:
+                gain = better.score - at.score
+                ends = agrees_with_prediction(problem, gain, predicted)
+                return better, A, damping, ends or gain < problem.config.fit.step_gain
+            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
+        return at, A, damping, True
+
+
 def _gauss_newton_steps(
     problem: Problem, start: Fit, about: Linearisation, rounds: int
 ) -> tuple[Fit, float]:
@@ -281,78 +401,19 @@ def _gauss_newton_steps(
 
     Returns the fit, and its score with the determinant.
     """
-    config, free, levels = problem.config.select, start.free, start.levels
-    on = problem.program.effect_switches(start.effects)
-    space = ParameterSpace(free)
-    theta = middle = space.clip(start.theta)
-    known = about.columns
-    slope = np.append(about.slope, np.zeros(len(free) - len(about.slope)))
-
-    def whitened_errors_and_score(x: Array) -> tuple[Array, float]:
-        white = problem.whitened_errors(free, x, on, levels, about.passes)
-        with np.errstate(over="ignore"):  # the simulated boat may diverge
-            score = log_prior(free, x) - 0.5 * float(white @ white)
-            return white, score + float(slope @ ((x - middle) / space.sd))
-
-    def evaluate_above(x: Array, least: float) -> tuple[Array, float] | None:
-        """The errors and the score, if it is higher than `least`."""
-        most = 2.0 * (log_prior(free, x) + float(slope @ ((x - middle) / space.sd)) - least)
-        with np.errstate(over="ignore", invalid="ignore"):
-            white = problem.whitened_errors_within(free, x, on, levels, about.passes, most + MARGIN)
-        if white is None:
-            return None
-        score = log_prior(free, x) - 0.5 * float(white @ white)
-        score += float(slope @ ((x - middle) / space.sd))
-        return (white, score) if score > least else None
-
-    white, score = whitened_errors_and_score(theta)
-    if not score > about.score - config.screening_loss:
-        # the other parameters may make up for the start: more mass for more thrust and damping
-        J = np.hstack([known, np.zeros((len(known), len(free) - known.shape[1]))])
-        g = slope - J.T @ white - (theta - space.mean) / space.sd
-        moved = space.damped_step(theta, J.T @ J, g, 0.0)
-        better = evaluate_above(moved, score if np.isfinite(score) else -LARGE)
-        if better is not None:
-            theta, (white, score) = moved, better
-    own = np.arange(len(free)) >= len(about.slope)
-    least = about.score - config.screening_loss
-    for i in range(config.screening_halvings):  # a start may be far too strong for this hull
-        if np.isfinite(score) and score > least:
-            break
-        theta = np.where(own, 0.5 * (theta + space.mean), theta)
-        better = evaluate_above(theta, least)
-        if better is not None:
-            white, score = better
-        elif i == config.screening_halvings - 1:
-            white, score = whitened_errors_and_score(theta)
-    if not np.isfinite(score):
+    search = _ScreeningSearch(problem, start, about)
+    point = search.first_point()
+    if not np.isfinite(point.score):
         return start, -np.inf
-    damping, A = FIRST_DAMPING, np.zeros((len(free), len(free)))
+    damping, A = FIRST_DAMPING, np.zeros((len(start.free), len(start.free)))
     for _ in range(rounds):
-        J = jacobian(problem, free, theta, on, levels, about.passes, white, known.shape[1])
-        J = np.hstack([known, J])
-        A = J.T @ J
-        gain, ends = 0.0, False
-        for _ in range(config.screening_dampings):
-            g = slope - J.T @ white - (theta - space.mean) / space.sd
-            trial = space.damped_step(theta, A, g, damping)
-            predicted = space.predicted_gain(J, g, theta, trial)
-            if predicted >= 0.0 and score + predicted < about.score + config.screening_promise:
-                # too little to follow: the prediction is accepted
-                theta, score, ends = trial, score + predicted, True
-                break
-            better = evaluate_above(trial, score)
-            if better is not None:
-                gain = better[1] - score
-                ends = agrees_with_prediction(problem, gain, predicted)
-                theta, (white, score) = trial, better
-                break
-            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
-        if gain < problem.config.fit.step_gain or ends:
+        point, A, damping, ends = search.step(point, damping)
+        if ends:
             break
-    information = np.eye(len(free)) + A
-    found = replace(start, theta=theta, covariance=space.covariance(information))
-    return found, score - _half_log_determinant(information)
+    information = np.eye(len(start.free)) + A
+    covariance = search.space.covariance(information)
+    found = replace(start, theta=point.theta, covariance=covariance)
+    return found, point.score - _half_log_determinant(information)
 
 
 def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:

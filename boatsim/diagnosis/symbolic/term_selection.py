@@ -42,7 +42,7 @@ class Formula:
 
 
 @dataclass(frozen=True)
-class _Trial:
+class _Extension:
     """A formula with one more term: its placeholder, the fit, and the term as scored."""
 
     placeholder: str
@@ -75,13 +75,13 @@ def select_terms(
         if formula.terms and budget.is_spent:
             return replace(formula, complete=False)
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
-        trials = _trials(problem, formula, ordered, refused, everywhere)
-        if not trials:
+        extensions = _extensions(problem, formula, ordered, refused, everywhere)
+        if not extensions:
             break
-        trial = max(trials, key=lambda t: t.fit.evidence)
-        # the placeholder has the term of the last trial
-        _write_scored(problem, trial.placeholder, trial.scored, everywhere)
-        term, found = _refined(problem, formula, trial, everywhere)
+        extension = max(extensions, key=lambda t: t.fit.evidence)
+        # the placeholder has the term of the last extension
+        _write_scored(problem, extension.placeholder, extension.scored, everywhere)
+        term, found = _refined(problem, formula, extension, everywhere)
         found = converge(problem, found)
         gained = formula.fit.evidence - best.evidence
         required = max(
@@ -89,10 +89,10 @@ def select_terms(
         )
         if found.evidence - formula.fit.evidence < required:
             break
-        extended = Formula(found, formula.terms | {trial.placeholder: term})
+        extended = Formula(found, formula.terms | {extension.placeholder: term})
         fewer: dict[str, Formula] = {}
         if _replaces_effect(problem, formula, extended, fewer):
-            refused.add(term_family(trial.scored.term))
+            refused.add(term_family(extension.scored.term))
             continue
         formula = _pruned(problem, extended, fewer)
         ends = budget.is_spent and len(formula.terms) < config.describe.most_terms
@@ -113,23 +113,23 @@ def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[
     return score_terms(recordings, list(grammar))
 
 
-def _trials(
+def _extensions(
     problem: Problem,
     formula: Formula,
     ordered: Sequence[ScoredTerm],
     refused: set[Family],
     everywhere: Recordings,
-) -> list[_Trial]:
+) -> list[_Extension]:
     """Fit the formula with each of the best terms."""
     best = []
     for scored in best_term_of_each_family(ordered):
         if scored.gain > 0.0 and term_family(scored.term) not in refused:
             best.append(scored)
-    trials = []
+    extensions = []
     for scored in best[: problem.config.describe.fitted_terms]:
-        if trial := _with_term(problem, formula, scored, everywhere):
-            trials.append(trial)
-    return trials
+        if extension := _with_term(problem, formula, scored, everywhere):
+            extensions.append(extension)
+    return extensions
 
 
 def term_family(term: SymbolicTerm) -> Family:
@@ -168,7 +168,7 @@ def _write_scored(
 
 def _with_term(
     problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
-) -> _Trial | None:
+) -> _Extension | None:
     """Fit the formula with one more term; None without a free placeholder or if it diverges."""
     placeholder = unused_placeholder(problem, type(scored.term), list(formula.terms))
     if not placeholder:
@@ -189,15 +189,15 @@ def _with_term(
     found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
     if not np.isfinite(found.evidence):
         return None
-    return _Trial(placeholder, fit(problem, found), scored)
+    return _Extension(placeholder, fit(problem, found), scored)
 
 
 def _refined(
-    problem: Problem, formula: Formula, trial: _Trial, everywhere: Recordings
+    problem: Problem, formula: Formula, extension: _Extension, everywhere: Recordings
 ) -> tuple[SymbolicTerm, Fit]:
     """Refine the times or lengths of the newest term; return the term and the fit with it."""
-    config, placeholder, found = problem.config.describe, trial.placeholder, trial.fit
-    scored = trial.scored
+    config, placeholder, found = problem.config.describe, extension.placeholder, extension.fit
+    scored = extension.scored
     if not term_variants(scored.term, problem.recordings, config.coarse_refinement[0], config):
         return scored.term, found
     recordings, best = fitted_recordings(problem, formula.fit), scored

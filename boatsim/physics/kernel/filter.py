@@ -24,8 +24,8 @@ from boatsim.physics.kernel.matrices import (
 from boatsim.physics.kernel.records import (
     FilterHistory,
     FilterPass,
-    FilterStart,
     FilterWorkspace,
+    InitialState,
     Inputs,
     LatentForce,
     LawArguments,
@@ -435,7 +435,7 @@ def update_by_row(
 
 
 @lean
-def initialise_filter(start: FilterStart, noise: ProcessNoise, estimate: StateEstimate) -> None:
+def initialise_filter(start: InitialState, noise: ProcessNoise, estimate: StateEstimate) -> None:
     """Set the filter's mean and covariance at the first row, with oscillators at any phase."""
     s, w, m, z, P = noise.oscillating_force, noise.instrument_drift, noise.m, estimate.z, estimate.P
     for a in range(LASTING):
@@ -460,7 +460,7 @@ def kalman_filter(
     measured: Measurements,
     model: VesselNumbers,
     force: LatentForce,
-    start: FilterStart,
+    start: InitialState,
     options: PassOptions,
     out: PassArrays,
     history: FilterHistory,

@@ -82,14 +82,15 @@ class LatentForce(NamedTuple):
     white: Array  # (NQ,) two-sided spectral density of the white noise [N^2 s, N^2 m^2 s]
 
 
-class FilterStart(NamedTuple):
-    """Gaussian distribution of the filter's state at the first row of a recording.
+class InitialState(NamedTuple):
+    """Prior mean and covariance of the Kalman filter's state at the first row of a recording.
 
-    The state contains positions, earth-axes rates and latent forces.
+    The state holds the positions, their rates in earth axes and the latent forces, which are the
+    unknown forces that the filter estimates.
     """
 
     mean: Array  # (3 NQ,)
-    covariance: Array  # (3 NQ, 3 NQ)
+    covariance: Array  # (3 NQ, 3 NQ) without sensor noise and latent forces
     rates: Array  # (NQ,) earth-axes rates about which the first interval is linearised
 
 

@@ -84,7 +84,8 @@ def sd_of_corrected_estimates(
             if param.fit and sd is not None:
                 return sd
         for number in type(effect).adds_to.values():
-            sd = estimated_number_sd(*number.split("."), vessel, estimated)
+            owner, key = number.split(".")
+            sd = estimated_number_sd(owner, key, vessel, estimated)
             if sd is not None:
                 return sd
     return estimated.get(type(effect).refines)
