@@ -19,7 +19,7 @@ LONGEST = 80  # characters of a value in a message
 LARGEST_WHOLE = (1 << 63) - 1  # integers of numpy
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Return a value as an error message contains it: in one line, cut if it is long."""
     try:
         text = " ".join(repr(value).split())
@@ -38,7 +38,7 @@ def type_error(argument: str, value: object, allowed: str) -> TypeError:
         value: Its value.
         allowed: What is allowed.
     """
-    return TypeError(f"{argument} = {shown(value)}; allowed is {allowed}")
+    return TypeError(f"{argument} = {short_repr(value)}; allowed is {allowed}")
 
 
 def check_instance(argument: str, value: object, kind: type | UnionType, allowed: str) -> None:
@@ -70,11 +70,11 @@ def checked_name(argument: str, value: object) -> str:
     if not isinstance(name, str):
         raise type_error(argument, value, "a name or a path as text")
     if "\0" in name:
-        raise BadInput(f"{argument} = {shown(name)}; a null character is not allowed")
+        raise BadInput(f"{argument} = {short_repr(name)}; a null character is not allowed")
     try:
         name.encode()
     except UnicodeEncodeError:
-        raise BadInput(f"{argument} = {shown(name)}; allowed is Unicode text") from None
+        raise BadInput(f"{argument} = {short_repr(name)}; allowed is Unicode text") from None
     return name
 
 
@@ -141,7 +141,7 @@ def checked_number(
         number = inf
     if not isfinite(number) or not low <= number <= high:
         allowed = f"{low:g} to {high:g} {unit}".rstrip()
-        raise BadInput(f"{argument} = {shown(value)}; allowed {allowed}")
+        raise BadInput(f"{argument} = {short_repr(value)}; allowed {allowed}")
     return number
 
 
@@ -155,7 +155,7 @@ def checked_integer(argument: str, value: object, low: int = 0, high: int = LARG
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
         raise type_error(argument, value, "a whole number")
     if not low <= value <= high:
-        raise BadInput(f"{argument} = {shown(value)}; allowed {low} to {high:g}")
+        raise BadInput(f"{argument} = {short_repr(value)}; allowed {low} to {high:g}")
     return int(value)
 
 
@@ -190,7 +190,7 @@ def float_array(argument: str, value: object) -> NDArray[np.float64]:
     allowed = "is a number"
     if isinstance(value, Iterable) and not isinstance(value, str | bytes):
         allowed = "are numbers"
-    raise BadInput(f"{argument} = {shown(value)}; allowed {allowed}")
+    raise BadInput(f"{argument} = {short_repr(value)}; allowed {allowed}")
 
 
 def integer_array(argument: str, value: object) -> NDArray[np.int64]:
@@ -202,13 +202,13 @@ def integer_array(argument: str, value: object) -> NDArray[np.int64]:
     try:
         whole = np.asarray(value)
     except (TypeError, ValueError):
-        raise BadInput(f"{argument} = {shown(value)}; allowed are whole numbers") from None
+        raise BadInput(f"{argument} = {short_repr(value)}; allowed are whole numbers") from None
     if whole.dtype.kind in "iu" and (not whole.size or whole.max() <= LARGEST_WHOLE):
         return whole.astype(np.int64)
     given = float_array(argument, value)
     largest = float(1 << 53)  # floats represent all smaller integers
     if not np.isfinite(given).all() or (given != np.round(given)).any():
-        raise BadInput(f"{argument} = {shown(value)}; allowed are whole numbers")
+        raise BadInput(f"{argument} = {short_repr(value)}; allowed are whole numbers")
     if (np.abs(given) > largest).any():
-        raise BadInput(f"{argument} = {shown(value)}; allowed are numbers of 53 bits")
+        raise BadInput(f"{argument} = {short_repr(value)}; allowed are numbers of 53 bits")
     return given.astype(np.int64)

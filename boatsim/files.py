@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from boatsim.arguments import shown
+from boatsim.arguments import short_repr
 from boatsim.errors import BadInput, unknown_name_message
 
 # A value of TOML or JSON, as tomllib and json read it; a datetime is a date
@@ -165,7 +165,7 @@ def _first_mistake(model: type[BaseModel], error: ValidationError) -> str:
         return message
     if message == "input should be an object":
         message = f"allowed is a table, [{place}]"
-    return f"{place} = {shown(first['input'])}; {message}"
+    return f"{place} = {short_repr(first['input'])}; {message}"
 
 
 def _allowed_keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:

@@ -61,7 +61,7 @@ def raise_latent_force_level(problem: Problem, recordings: Sequence[MappedRecord
         problem: The estimation problem, with its priors and settings.
         recordings: Recordings mapped to the vessel program of the problem.
     """
-    everything = problem.on(recordings)
+    everything = problem.with_recordings(recordings)
     fit = problem.nominal_hypothesis()
     passes = _passes(everything, fit)
     for _ in range(problem.config.fit.lost_raises * len(fit.levels.force)):
@@ -88,7 +88,7 @@ def find_divergences(
         recordings: Recordings mapped to the vessel program of the problem.
         forces: Missing force of each recording.
     """
-    passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
+    passes = _passes(problem.with_recordings(recordings), problem.nominal_hypothesis()).passes
     limit = problem.config.fit.lost_sds
     lasting = []
     for mapped, passed in zip(recordings, passes, strict=True):
@@ -115,7 +115,7 @@ def first_rows_are_finite(problem: Problem, recordings: Sequence[MappedRecording
         problem: The estimation problem, with its priors and settings.
         recordings: Recordings mapped to the vessel program of the problem.
     """
-    passes = _passes(problem.on(recordings), problem.nominal_hypothesis()).passes
+    passes = _passes(problem.with_recordings(recordings), problem.nominal_hypothesis()).passes
     for mapped, passed in zip(recordings, passes, strict=True):
         last = int(np.searchsorted(mapped.times, mapped.times[0] + _window(problem), side="right"))
         if np.isfinite(_by_row(mapped, passed)[:last]).all():

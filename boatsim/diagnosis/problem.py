@@ -290,7 +290,7 @@ class Problem:
         object.__setattr__(self, "links", self._inherited_places())
         object.__setattr__(self, "groups", self._groups())
 
-    def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
+    def with_recordings(self, recordings: Sequence[MappedRecording]) -> "Problem":
         """Return the same estimation problem for other recordings.
 
         Args:
@@ -370,7 +370,7 @@ class Problem:
             target = self._target(effect, name)
             if target is None:
                 continue
-            scale = self.scale(effect, name)
+            scale = self.scale_from_reference_hull(effect, name)
             low, high = self._bounds(param)
             free.append(
                 FreeParameter(
@@ -571,7 +571,7 @@ class Problem:
             found.append(errors)
         return np.concatenate(found)
 
-    def scale(self, effect: Effect, name: str) -> float:
+    def scale_from_reference_hull(self, effect: Effect, name: str) -> float:
         """Return the ratio of a candidate effect's parameter to its value on the reference hull.
 
         Quantities follow Froude's law. The threshold of a command scales with the largest command

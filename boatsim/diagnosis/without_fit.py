@@ -54,7 +54,7 @@ def results_without_fit(
         places = find_divergences(problem, everything, forces)
         horizon = free_run_horizon(problem, held_out)
         runs = _finite_runs(problem, fit, held_out, horizon)
-        before = problem.on(everything).log_likelihood(
+        before = problem.with_recordings(everything).log_likelihood(
             fit.free, fit.theta, problem.program.effect_switches(()), problem.ambient
         )
     gain = float(np.nan_to_num(fit.evidence - before, nan=LARGEST_GAIN, posinf=LARGEST_GAIN))

@@ -166,7 +166,7 @@ def _make_problems(
     levels = prior_noise_levels(boat, first)
     mapped = [infer_initial_actuator_state(map_recording(r, program), levels) for r in first]
     problem = Problem(mapped, levels, priors.coefficient_uncertainty(boat))
-    return problem, problem.on([map_recording(r, program) for r in last])
+    return problem, problem.with_recordings([map_recording(r, program) for r in last])
 
 
 def _add_candidates(problem: Problem, best: Fit, report: Report) -> Fit:

@@ -7,7 +7,7 @@ from dataclasses import field, fields
 from functools import cache
 from typing import NamedTuple, Self, TypeVar
 
-from boatsim.arguments import shown
+from boatsim.arguments import short_repr
 from boatsim.errors import BadInput, unknown_name_message
 
 N = TypeVar("N", bound=float)  # int or float
@@ -304,7 +304,7 @@ class CheckedParameters:
                 raise BadInput(unknown_name_message(f"{cls.__name__}: setting", str(key), types))
             allowed = _wrong_type(value, types[key])
             if allowed:
-                raise BadInput(f"{cls.__name__}: {key} = {shown(value)}; allowed is {allowed}")
+                raise BadInput(f"{cls.__name__}: {key} = {short_repr(value)}; allowed is {allowed}")
         return cls(**settings)
 
     def __post_init__(self) -> None:
@@ -315,7 +315,7 @@ class CheckedParameters:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             if not is_number or not abs(value) <= LARGEST_FLOAT:  # nan, or an integer beyond it
                 raise BadInput(
-                    f"{type(self).__name__}.{name} = {shown(value)}; "
+                    f"{type(self).__name__}.{name} = {short_repr(value)}; "
                     f"allowed is a number ({about.words})"
                 )
             if not about.low <= value <= about.high:

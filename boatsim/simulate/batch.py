@@ -21,7 +21,7 @@ from boatsim.arguments import (
     checked_number,
     float_array,
     integer_array,
-    shown,
+    short_repr,
     type_error,
 )
 from boatsim.errors import BadInput, unknown_name_message
@@ -150,7 +150,7 @@ class Batch:
         if seeds is not None:
             self._seeds = integer_array("seeds", seeds)
             if self._seeds.min(initial=0) < 0:
-                raise BadInput(f"seeds = {shown(seeds)}; allowed are numbers from 0")
+                raise BadInput(f"seeds = {short_repr(seeds)}; allowed are numbers from 0")
         if self._seeds.shape != (self.n,):
             raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
@@ -462,7 +462,7 @@ class Batch:
         except ValueError:  # rows of different lengths
             given = np.zeros((0, 0))
         if given.ndim > 1:
-            raise BadInput(f"boats = {shown(boats)}; allowed are numbers or a mask of boats")
+            raise BadInput(f"boats = {short_repr(boats)}; allowed are numbers or a mask of boats")
         if given.dtype == bool:
             if given.shape != (self.n,):
                 raise BadInput(f"boats is a mask of shape {given.shape}; allowed is ({self.n},)")
@@ -505,7 +505,7 @@ class Batch:
             for name, value in commands.items():
                 _check_command(vessel, name, value)
                 if np.ndim(value) > 0:
-                    raise BadInput(f"commands: {name} = {shown(value)}; allowed is one number")
+                    raise BadInput(f"commands: {name} = {short_repr(value)}; allowed is one number")
             return clipped_commands(vessel, commands)
         given, width = float_array("commands", commands), len(vessel.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)

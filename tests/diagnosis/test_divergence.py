@@ -98,7 +98,7 @@ def test_forces_that_are_never_finite_are_refused_in_one_line() -> None:
     [mapped] = problem.recordings
     broken = replace(mapped, values=np.full_like(mapped.values, np.nan))
     with pytest.raises(BadInput, match=r"run.csv: the forces of trial_boat are not finite"):
-        results_without_fit(problem.on([broken]), [broken], "run.csv")
+        results_without_fit(problem.with_recordings([broken]), [broken], "run.csv")
 
 
 def test_a_jump_of_the_position_is_a_fault_of_the_log_and_not_of_its_unit(tmp_path: Path) -> None:

@@ -141,7 +141,7 @@ def test_a_run_may_belong_to_a_build_and_to_a_day():
     mapped = [map_recording(run, program) for run in runs]
     problem = Problem(mapped, prior_noise_levels(BOAT, runs), {"thrust": 0.05})
     assert problem.groups == ("blue", "june", "may", "red")
-    assert problem.on(mapped[:1]).groups == problem.groups
+    assert problem.with_recordings(mapped[:1]).groups == problem.groups
     alike = Problem(mapped[:2], prior_noise_levels(BOAT, runs), {"thrust": 0.05})
     assert alike.groups == ("june", "may")  # both are of one build
 

@@ -277,7 +277,7 @@ class Weather:
 
         def score(x: Array) -> float:
             wind = wind_of_force(x)
-            problem = self.problem.on(self.in_wind(fixed_ship, wind))
+            problem = self.problem.with_recordings(self.in_wind(fixed_ship, wind))
             likelihood = problem.log_likelihood((), np.zeros(0), on, self.ship.levels)
             return likelihood - 0.5 * float(x @ x) / self.prior_sd**2
 
@@ -303,7 +303,7 @@ class Weather:
             recordings = []
             for stretches, wind in zip(runs, list(map(self.find_wind, runs)), strict=True):
                 recordings += self.in_wind(stretches, wind)
-            found = fit(self.problem.on(recordings), self._without_wind())
+            found = fit(self.problem.with_recordings(recordings), self._without_wind())
             self.ship.theta[self.rest] = found.theta
             self.ship = replace(self.ship, levels=found.levels)
 
@@ -483,7 +483,7 @@ def main() -> None:
     mapper = mapper_of(diagnosis, runs)
     mapped = {name: mapper(run.stretches) for name, run in runs.items()}
     fitted = [stretches for name, stretches in mapped.items() if name.startswith(FITTED)]
-    problem = diagnosis.problem.on(list(chain.from_iterable(fitted)))
+    problem = diagnosis.problem.with_recordings(list(chain.from_iterable(fitted)))
     ranking = diagnosis.ranking
     recalibrated = converge(problem, ranking.recalibrated)
     weather = Weather(problem, ranking.best)

@@ -112,7 +112,7 @@ def main() -> None:
             fitted += mapper(run.stretches)
         if name.startswith(JUDGED):
             judged += mapper([run.whole])
-    problem = diagnosis.problem.on(fitted)
+    problem = diagnosis.problem.with_recordings(fitted)
     recalibrated = converge(problem, diagnosis.ranking.recalibrated)
     fits = {
         "nominal": diagnosis.ranking.nominal,

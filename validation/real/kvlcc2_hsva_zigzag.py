@@ -68,7 +68,7 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
     rows = []
     better = dict.fromkeys(UNITS, 0)
     for out in recordings:
-        problem = diagnosis.problem.on([run for run in recordings if run is not out])
+        problem = diagnosis.problem.with_recordings([run for run in recordings if run is not out])
         fits = {}
         for model, start in zip(
             REFITTED, (diagnosis.ranking.recalibrated, diagnosis.ranking.best), strict=True

@@ -211,7 +211,7 @@ def print_error_sources(
         errors_of: Returns the errors of a fit on the held-out runs.
     """
     before = diagnosis.ranking.recalibrated
-    everything = diagnosis.problem.on([*diagnosis.problem.recordings, *held_out])
+    everything = diagnosis.problem.with_recordings([*diagnosis.problem.recordings, *held_out])
     whole = converge(everything, gauss_newton(everything, before, 6, 0.1))
     with_held_out = errors_of(whole)
     rng = np.random.default_rng(0)

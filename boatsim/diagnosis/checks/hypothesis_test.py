@@ -78,7 +78,7 @@ class Comparison:
             BadInput: A changed recording cannot be mapped to the vessel.
         """
         changed = apply_corrections_to_all(recordings, changes)
-        return self.problem.on(list(map(self.map_recording, changed)))
+        return self.problem.with_recordings(list(map(self.map_recording, changed)))
 
     def goodness_of_fit(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
         """Return how well the vessel model explains recordings whose columns are changed.

@@ -11,7 +11,7 @@ from dataclasses import Field, dataclass, fields, replace
 from math import isfinite
 from typing import Any, TypeAlias
 
-from boatsim.arguments import shown
+from boatsim.arguments import short_repr
 from boatsim.diagnosis.config.answer import AnswerConfig
 from boatsim.diagnosis.config.checks import ChecksConfig
 from boatsim.diagnosis.config.decide import DecideConfig
@@ -104,7 +104,9 @@ def _check_value(name: str, one: "Field[Any]", given: Given) -> Number | tuple[N
     else:
         values = [given]
     if len(values) != len(one.default):
-        raise BadInput(f"setting {name} = {shown(given)}: {len(one.default)} numbers are needed")
+        raise BadInput(
+            f"setting {name} = {short_repr(given)}: {len(one.default)} numbers are needed"
+        )
     return tuple(_check_number(name, one, value) for value in values)
 
 
@@ -114,7 +116,9 @@ def _check_number(name: str, one: "Field[Any]", given: object) -> Number:
     whole = isinstance(first, int)
     about = one.metadata
     allowed = f"{'an integer' if whole else 'a number'} from {about['low']:g} to {about['high']:g}"
-    refused = BadInput(f"setting {name} = {shown(given)}: allowed is {allowed} [{about['unit']}]")
+    refused = BadInput(
+        f"setting {name} = {short_repr(given)}: allowed is {allowed} [{about['unit']}]"
+    )
     if isinstance(given, bool) or not isinstance(given, str | int | float):
         raise refused
     try:

@@ -140,7 +140,7 @@ def effect_consistency(
     fitted = _linearised(problem, best)
     parts = _parts_in_time(problem, problem.config.decide.time_parts)
     ranges = list(_ranges(problem, best))
-    unseen_problem = problem.on(held_out)
+    unseen_problem = problem.with_recordings(held_out)
     unseen = _linearised(unseen_problem, best) if held_out else None
     found = {}
     for name, without in without_each.items():

@@ -84,7 +84,7 @@ def _of_held_out(
     """Evidence of an unmodelled force on held-out recordings [nats], and its structure."""
     if not held_out:
         return 0.0, NO_STRUCTURE
-    unseen = problem.on(held_out)
+    unseen = problem.with_recordings(held_out)
     fitted = fit_noise(unseen, best)
     remains = unexplained_evidence(unseen, fitted)
     if not np.isfinite(remains):

@@ -180,13 +180,15 @@ def starting_points(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     kind = type(effect)
     default = {}
     for name, p in kind.params().items():
-        scale = problem.scale(effect, name)
+        scale = problem.scale_from_reference_hull(effect, name)
         mean = p.prior_mean * scale
         step = problem.config.select.screening_start * p.spread * scale
         default[name] = mean + step if mean + step <= p.high else mean - step
     specified = []
     for start in kind.starts:
-        specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})
+        specified.append(
+            {n: x * problem.scale_from_reference_hull(effect, n) for n, x in start.items()}
+        )
     largest = largest_command(problem.recordings, effect, problem.config.load)
     if largest:
         for name, shares in kind.thresholds.items():

@@ -125,7 +125,7 @@ def predictive_log_likelihood(sets: CandidateSets, found: Fit, held_out: Recordi
     """
     key = (id(found), id(held_out))
     if key not in sets.predictions:
-        problem = sets.problem.on(held_out)
+        problem = sets.problem.with_recordings(held_out)
         refitted = fit_latent_force_level(problem, found)
         on = problem.program.effect_switches(refitted.effects)
         likelihood = problem.log_likelihood(refitted.free, refitted.theta, on, refitted.levels)

@@ -423,7 +423,7 @@ def test_held_out_runs_of_a_boat_that_lacks_nothing_have_no_structure() -> None:
     for seed in range(60, 72, 2):
         problem, found = laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2)))
         unseen = sail("held_out", seed + 40, nothing)[0]
-        held_out = problem.on([map_recording(unseen, problem.program)])
+        held_out = problem.with_recordings([map_recording(unseen, problem.program)])
         assert find_structure_held_out(held_out, found).p_value > 0.01
 
 
