@@ -1,10 +1,12 @@
 """What all tests share: a property is judged by its examples, not by how long one of them took on a
 busy machine."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import runs
 from hypothesis import settings
 
 from boatsim.physics.trust import trust_folders
@@ -18,3 +20,14 @@ def trusted(tmp_path: Path) -> Iterator[None]:
     """The Python files of the test's own folder may run, as with --trust."""
     with trust_folders(allowed=[tmp_path]):
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _runs_shared_by_all_processes(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """What one process found of a shipped scenario, the others read."""
+    root = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        root = root.parent
+    folder = root / "runs"
+    folder.mkdir(exist_ok=True)
+    runs.SHARED[:] = [folder]

@@ -1,8 +1,11 @@
 """Runs of shipped scenarios, each made once for all tests that look at it."""
 
+import os
+import pickle
 from collections.abc import Sequence
 from functools import cache
 from math import nan
+from pathlib import Path
 from typing import Any
 
 from boatsim.physics.content import shipped_content_names
@@ -31,9 +34,28 @@ def raw(name: str) -> dict[str, Any]:
     return read_scenario(name)[0]
 
 
+Found = tuple[dict[str, Metric], int]
+# Folder of this test run in which its processes share what they found; set by conftest.py
+SHARED: list[Path] = []
+
+
 @cache
-def found(name: str, seed: int = 0) -> tuple[dict[str, Metric], int]:
+def found(name: str, seed: int = 0) -> Found:
     """Norms of a shipped scenario, and in how many steps the hull touched a wall."""
+    if not SHARED:
+        return _found(name, seed)
+    file = SHARED[0] / f"{name.replace('/', '+')}+{seed}.pickle"
+    if file.exists():
+        kept: Found = pickle.loads(file.read_bytes())
+        return kept
+    result = _found(name, seed)
+    part = file.with_suffix(f".{os.getpid()}")
+    part.write_bytes(pickle.dumps(result))
+    part.replace(file)
+    return result
+
+
+def _found(name: str, seed: int) -> Found:
     done = run(scenario.load(name), seed)
     return requested_metrics(done), int((done.recording["contacts"] > 0).sum())
 
