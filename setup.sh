@@ -24,7 +24,12 @@ make_venv() {
 
 [ -x .venv/bin/pip ] && fits .venv/bin/python || make_venv
 say "$(.venv/bin/python --version); installing what requirements.lock states: some minutes the first time, seconds later"
-# --no-compile: Python compiles a module at its first import, and most of them are never imported.
-.venv/bin/python -m pip install --quiet --no-compile --progress-bar on --disable-pip-version-check --requirement requirements.lock
+# Python compiles a module at its first import, and most of them are never imported. Where it must not write what it compiled, it
+# would compile them again at each start.
+compile=--no-compile
+if [ -n "${PYTHONDONTWRITEBYTECODE:-}" ]; then
+    compile=--compile
+fi
+.venv/bin/python -m pip install --quiet "$compile" --progress-bar on --disable-pip-version-check --requirement requirements.lock
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
 say "ready: .venv/bin/boatsim"

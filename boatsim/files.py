@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import date, time
+from functools import lru_cache
 from itertools import repeat
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, TypeAlias, TypeVar
@@ -22,6 +23,9 @@ Value: TypeAlias = (
 )
 
 MAX_TOML_BYTES = 1 << 20
+# Contents of files kept after parsing: a scenario file with many cases is read once per case, and
+# several vessels and scenarios may be based on it
+PARSED_FILES = 64
 MAX_DEPTH = 32  # of tables and lists within each other
 INTEGER_LIMIT = 1 << 63  # TOML guarantees integers of 64 bits only
 DOTTED = re.compile(
@@ -74,12 +78,7 @@ def read_toml(path: Path) -> dict[str, Value]:
             raise BadInput(
                 f"{path}: more than {MAX_TOML_BYTES} bytes; larger TOML files are not read"
             )
-        text = raw.decode("utf-8-sig")
-        if DOTTED.search(text):  # the parser's time grows with the square of the dots
-            raise RecursionError
-        found: dict[str, Value] = tomllib.loads(text)
-        _check_sizes(found)
-        return found
+        return {key: _copied(value) for key, value in _parse_toml(raw).items()}
     except FileNotFoundError:
         raise BadInput(f"{path}: no such file") from None
     except RecursionError:
@@ -91,6 +90,29 @@ def read_toml(path: Path) -> dict[str, Value]:
         if isinstance(error, OSError):
             reason = str(error.strerror)
         raise BadInput(f"{path}: not a TOML file ({reason})".replace("\n", " ")) from None
+
+
+@lru_cache(maxsize=PARSED_FILES)
+def _parse_toml(raw: bytes) -> dict[str, Value]:
+    """Content of a TOML file, which callers must not change.
+
+    Raises ValueError, or RecursionError for too deep nesting.
+    """
+    text = raw.decode("utf-8-sig")
+    if DOTTED.search(text):  # the parser's time grows with the square of the dots
+        raise RecursionError
+    found: dict[str, Value] = tomllib.loads(text)
+    _check_sizes(found)
+    return found
+
+
+def _copied(value: Value) -> Value:
+    """A copy whose tables and lists a caller may change."""
+    if isinstance(value, dict):
+        return {key: _copied(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return list(map(_copied, value))
+    return value
 
 
 def _check_sizes(content: Mapping[str, Value]) -> None:
