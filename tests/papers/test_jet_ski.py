@@ -212,9 +212,15 @@ def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system
     """theta (4, -4.5) unknown, C = 160/(s + 160), a step of 25: the known reference system gives y(1), y(2), y(5)."""
     am = [[0.0, 1.0], [-1.0, -1.4]]
     design = make_loop_design(
-        am, (-10, -10, -1e-9, 1 - 1e-9), (10, 10, 1e-9, 1 + 1e-9), (0, 0, 0, 1), gain=1e4, bandwidth=160.0,
-        period=2e-4, step=2e-5,
-    )  # fmt: skip
+        am,
+        (-10, -10, -1e-9, 1 - 1e-9),
+        (10, 10, 1e-9, 1 + 1e-9),
+        (0, 0, 0, 1),
+        gain=1e4,
+        bandwidth=160.0,
+        period=2e-4,
+        step=2e-5,
+    )
     loop, of = np.zeros(1, loop_memory_type(2)).view(np.recarray)[0], design.view(np.recarray)[0]
     x, a, seen, u = np.zeros(2), np.array([[0.0, 1.0], [3.0, -5.9]]), {}, 0.0
     initialise_loop(loop, of, 0.0)

@@ -25,9 +25,12 @@ def roll(seed: int = 0) -> CubicSpline:
     x = np.zeros_like(t)
     for begin in (5.0, 30.0, 50.0):
         since = np.maximum(t - begin, 0.0)
-        x += rng.uniform(0.1, 0.2) * (1.0 - np.exp(-since)) * np.exp(-since / 8.0) * np.sin(
-            4.0 * since
-        )  # fmt: skip
+        x += (
+            rng.uniform(0.1, 0.2)
+            * (1.0 - np.exp(-since))
+            * np.exp(-since / 8.0)
+            * np.sin(4.0 * since)
+        )
     return CubicSpline(t, x)
 
 

@@ -1010,13 +1010,25 @@ def test_evidence_is_stated_as_odds_and_nats_stand_behind_an_explanation(written
 @pytest.mark.parametrize(
     ("template", "value", "sd", "inactive", "text"),
     [
-        ("astern thrust is {share} of it", 0.6939, 0.0155, 1.0, "astern thrust is 69 % (± 1.6) of it"),
+        (
+            "astern thrust is {share} of it",
+            0.6939,
+            0.0155,
+            1.0,
+            "astern thrust is 69 % (± 1.6) of it",
+        ),
         ("{share}", 0.6939, 0.0035, 1.0, "69.4 % (± 0.35)"),
-        ("port pushes {more}, starboard {opposite}", -0.08, 0.012, 0.0, "port pushes 8 % (± 1.2) less, starboard more"),
+        (
+            "port pushes {more}, starboard {opposite}",
+            -0.08,
+            0.012,
+            0.0,
+            "port pushes 8 % (± 1.2) less, starboard more",
+        ),
         ("it is {larger}", 0.21, 0.02, 0.0, "it is 21 % (± 2.0) larger"),
         ("", 0.5, 0.1, 1.0, ""),
     ],
-)  # fmt: skip
+)
 def test_a_ratio_is_said_in_per_cent_with_its_deviation(template, value, sd, inactive, text):
     assert sentence_in_per_cent(template, value, sd, inactive) == text
 

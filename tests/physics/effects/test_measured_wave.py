@@ -251,9 +251,14 @@ def test_a_box_on_a_rig_follows_a_measured_wave_as_another_integrator_computes(
     out = np.full((1, len(t), 6), np.nan)
     code = program.simulation_functions
     code.simulate_intervals(
-        mapped.times_and_commands, 0.02, program.vessel_numbers(), np.array([0]), np.array([len(t) - 1]),
-        states, out,
-    )  # fmt: skip
+        mapped.times_and_commands,
+        0.02,
+        program.vessel_numbers(),
+        np.array([0]),
+        np.array([len(t) - 1]),
+        states,
+        out,
+    )
     free = np.abs(by_hand(t)).max(axis=0)
     # sway has the forces of second order too, of which the linear integrator knows the drift alone
     allowed = {"sway": 0.1, "heave": 0.04, "roll": 0.04}

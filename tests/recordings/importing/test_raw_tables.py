@@ -84,8 +84,13 @@ def test_the_motion_comes_back_from_a_table_with_many_faults(tmp_path, comma):
     off = np.angle(np.exp(1j * (found["psi_rad"] - run["psi"][begin:])))[seen]
     assert np.abs(off).max() < 1e-6
     remarks = "\n".join(found.remarks)
-    for said in ("logged after a later one", "time of another one", "latitude and longitude 0",
-                 "no new message had arrived", "times are those of column column_1"):  # fmt: skip
+    for said in (
+        "logged after a later one",
+        "time of another one",
+        "latitude and longitude 0",
+        "no new message had arrived",
+        "times are those of column column_1",
+    ):
         assert said in remarks
 
 

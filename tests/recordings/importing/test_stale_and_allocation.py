@@ -53,8 +53,15 @@ def test_commands_go_on_in_rows_without_a_new_message():
 
 
 def test_an_allocation_gives_the_shaft_rate_of_a_thrust_within_its_limits():
-    allocation = Allocation(sum=["X"], low=-50.0, high=100.0, coefficient=0.01, exponent=2.0,
-                            inverse=True, coefficient_below=0.005)  # fmt: skip
+    allocation = Allocation(
+        sum=["X"],
+        low=-50.0,
+        high=100.0,
+        coefficient=0.01,
+        exponent=2.0,
+        inverse=True,
+        coefficient_below=0.005,
+    )
     assert allocation.convert(np.array([100.0, 400.0, -50.0, -300.0, 0.0])) == pytest.approx(
         [100.0, 100.0, -100.0, -100.0, 0.0]
     )
