@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.signals import Array
@@ -32,6 +31,8 @@ def _uniform(probabilities: Array, low: float, high: float) -> Array:
 
 
 def _normal(probabilities: Array, mean: float, sd: float) -> Array:
+    from scipy.special import ndtri  # only here, because its import is slow
+
     return np.asarray(mean + sd * ndtri(probabilities), dtype=float)
 
 

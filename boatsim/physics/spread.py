@@ -5,7 +5,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, PositiveFloat, model_validator
-from scipy.special import ndtri
 
 from boatsim.files import Table
 from boatsim.physics.signals import Array
@@ -93,6 +92,8 @@ class FittedUncertainty:
         Args:
             shares: Independent numbers (k, F), uniform in (0, 1).
         """
+        from scipy.special import ndtri  # only here, because its import is slow
+
         off = ndtri(shares) @ self.root.T * self.sd
         found: dict[str, SampledChange] = {}
         for one, x in zip(self.of, off.T, strict=True):

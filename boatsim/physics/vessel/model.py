@@ -7,8 +7,6 @@ from math import inf
 from pathlib import Path
 from typing import Any, Self
 
-import tomlkit
-
 from boatsim.arguments import (
     check_instance,
     checked_mapping,
@@ -466,6 +464,8 @@ class Vessel(ChannelBindings):
             The saved vessel, as `load_vessel` reads it.
         """
         place = Path(checked_name("folder", folder)).resolve()
+        import tomlkit  # only here, because every command loads a vessel and few save one
+
         table = self._table(place)
         with replace_file(place / FILE_NAME) as temporary:
             temporary.write_text(tomlkit.dumps(table), encoding="utf-8")

@@ -3,8 +3,8 @@
 The origin is at the transom on the centre line in the water surface; x forward, y to port, z up.
 """
 
+import html
 from collections.abc import Iterable, Iterator
-from xml.sax.saxutils import quoteattr
 
 from boatsim.physics.estimate import inertia
 from boatsim.physics.estimate.base import HullParticulars
@@ -35,7 +35,7 @@ def hull_xml(hull: HullParticulars, name: str, comment: str, fittings: Iterable[
         fittings: Elements of outboards, rudders and the like.
     """
     lines = [
-        f"<mujoco model={quoteattr(name)}>",
+        f"<mujoco model="{html.escape(name)}">",
         f"  <!-- {comment} -->",
         "  <custom>",
         f'    <numeric name="drawn_for" data="{hull.length:g} {hull.beam:g} {hull.draught:.4g}"/> '
@@ -125,7 +125,7 @@ def geom_element(
     if material:
         of_material = f' material="{material}"'
     return (
-        f'<geom name={quoteattr(name)} class="{default_class}" type="{kind}"{of_material} '
+        f'<geom name="{html.escape(name)}" class="{default_class}" type="{kind}"{of_material} '
         f'pos="{format_numbers(*pos)}" size="{format_numbers(*size)}"/>'
     )
 
