@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, DescribeConfig, DiagnosisConfig
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import ChannelEffect, CoefficientRelease, Effect, Measurement
 from boatsim.physics.content import load_class, shipped_content_names
@@ -22,25 +23,18 @@ from boatsim.physics.vessel import Vessel, check_bindings
 FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
-FEWEST_INSTANCES = 3  # of drives each of which is a candidate of its own
 
 
 class Placeholders(NamedTuple):
-    """Name prefix and number of one kind of placeholder effect of a compiled vessel program.
+    """Effect, name prefix and number of one kind of placeholder effect of a compiled program.
 
     A placeholder has no law of its own. If symbolic regression finds a force or a change of thrust,
     the parameters of a placeholder are set to that term, so that nothing has to be compiled again.
     """
 
+    effect: str  # its name
     prefix: str  # of their names
     number: int
-
-
-# by the name of the effect
-PLACEHOLDERS = {
-    "described_force": Placeholders("described_", 5),
-    "described_thrust": Placeholders("described_thrust_", 2),
-}
 
 
 @dataclass(frozen=True)
@@ -88,6 +82,7 @@ def candidate_library(
     own: Sequence[str] = (),
     facts: Mapping[str, object] | None = None,
     columns: Sequence[str] | None = None,
+    config: DiagnosisConfig = DEFAULT,
 ) -> CandidateLibrary:
     """Return the candidate effects that a diagnosis may test on a vessel.
 
@@ -100,6 +95,7 @@ def candidate_library(
         facts: Facts of the recordings in addition to the vessel's.
         columns: Recorded columns; None: unknown. Effects with `needs_columns` are candidates only
             where these columns are known to be recorded.
+        config: Numbers of drives and of placeholders.
 
     Returns:
         The candidate effects with the reasons for each exclusion, and the placeholders.
@@ -111,7 +107,8 @@ def candidate_library(
     reasons = _exclusions_by_vessel(vessel)
     entries = dict[str, Effect]()
     excluded, inapplicable = dict[str, str](), dict[str, str]()
-    for source in _sources(vessel, own):
+    fewest = config.select.fewest_instances
+    for source in _sources(vessel, own, fewest):
         kind = source.kind
         name = str(source.table.get("name", kind.type_name()))
         if not has_fittable_parameter(kind):
@@ -121,7 +118,7 @@ def candidate_library(
                     "fit (fit=True)"
                 )
             continue
-        missing = missing_requirements(kind, vessel, known, source.table)
+        missing = missing_requirements(kind, vessel, known, source.table, fewest)
         missing = missing or _missing_columns(kind, columns)
         if missing:
             inapplicable[name] = missing
@@ -143,9 +140,8 @@ def candidate_library(
                 excluded[effect.name] = reason
     together = replace(vessel, effects=(*vessel.effects, *entries.values()))
     check_bindings(together, f"{vessel.name}: library")
-    return CandidateLibrary(
-        tuple(entries.values()), placeholder_effects(vessel), excluded, inapplicable
-    )
+    placeholders = placeholder_effects(vessel, config.describe)
+    return CandidateLibrary(tuple(entries.values()), placeholders, excluded, inapplicable)
 
 
 def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
@@ -159,16 +155,23 @@ def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:
     return reasons
 
 
-def placeholder_effects(vessel: Vessel) -> tuple[Effect, ...]:
+def placeholder_effects(
+    vessel: Vessel, config: DescribeConfig = DEFAULT.describe
+) -> tuple[Effect, ...]:
     """Return placeholder effects that can be set to terms found by symbolic regression.
 
     Only the kinds that can act on the vessel are returned, at zero effect.
 
     Args:
         vessel: Vessel of the recordings.
+        config: Numbers of placeholders.
     """
     found, taken = list[Effect](), {e.name for e in vessel.effects}
-    for idea, (prefix, number) in PLACEHOLDERS.items():
+    kinds = (
+        Placeholders("described_force", "described_", config.force_placeholders),
+        Placeholders("described_thrust", "described_thrust_", config.thrust_placeholders),
+    )
+    for idea, prefix, number in kinds:
         kind: type[Effect] = load_class("effect", idea)
         if kind.per_instance_of and not vessel.effects_of_type(kind.per_instance_of):
             continue
@@ -196,12 +199,15 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
     return (effect,)
 
 
-def _sources(vessel: Vessel, own: Sequence[str]) -> Iterator[_Source]:
-    """Every effect of the library, those that the vessel requests, and those of the user."""
+def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Source]:
+    """Every effect of the library, those that the vessel requests, and those of the user.
+
+    From `fewest` instances on, an error of a single one is a candidate for each of them.
+    """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
         instances = vessel.names_of(kind.once_per) if kind.once_per else []
-        if len(instances) < FEWEST_INSTANCES:
+        if len(instances) < fewest:
             yield _Source({"use": name}, kind, False)
             continue
         for instance in instances:
@@ -241,7 +247,11 @@ def _missing_columns(kind: type[Effect], columns: Sequence[str] | None) -> str:
 
 
 def missing_requirements(
-    kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], table: Mapping[str, object]
+    kind: type[Effect],
+    vessel: Vessel,
+    facts: Mapping[str, object],
+    table: Mapping[str, object],
+    fewest: int = DEFAULT.select.fewest_instances,
 ) -> str:
     """Return what a vessel lacks for an effect to act on it, in words; "" if nothing is missing.
 
@@ -252,6 +262,7 @@ def missing_requirements(
         vessel: Vessel of the recordings.
         facts: Facts of the vessel and of the recordings.
         table: Settings of the effect.
+        fewest: Instances from which on an error of a single one can be tested.
     """
     missing = [name for name in kind.needs if name not in vessel.dof]
     if missing:
@@ -268,8 +279,8 @@ def missing_requirements(
     for fact, value in kind.required_facts.items():
         if facts.get(fact) != value:
             return f"only where {fact} = {str(value).lower()}"
-    if kind.once_per and len(vessel.names_of(kind.once_per)) < FEWEST_INSTANCES:
-        return f"fewer than {FEWEST_INSTANCES} of {kind.once_per}"
+    if kind.once_per and len(vessel.names_of(kind.once_per)) < fewest:
+        return f"fewer than {fewest} of {kind.once_per}"
     if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"
     if kind.alone and vessel.names_of(kind.type_name()):
@@ -435,7 +446,9 @@ def program_to_replay(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     return Program(vessel), ()
 
 
-def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
+def program_with_candidates(
+    vessel: Vessel, names: Collection[str], config: DiagnosisConfig = DEFAULT
+) -> Program:
     """Return the compiled program of a vessel with the named candidate effects added.
 
     Candidates that cannot act on the vessel are left out.
@@ -443,17 +456,17 @@ def program_with_candidates(vessel: Vessel, names: Collection[str]) -> Program:
     Args:
         vessel: Vessel file.
         names: Names of candidates.
+        config: Numbers of drives and of placeholders.
     """
-    return Program(
-        vessel, tuple(e for e in candidate_library(vessel).compiled_effects if e.name in names)
-    )
+    library = candidate_library(vessel, config=config)
+    return Program(vessel, tuple(e for e in library.compiled_effects if e.name in names))
 
 
 def diagnosis_program(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     """Return the compiled program of a vessel with all candidate effects that a diagnosis tests.
 
-    If the vessel is a patched one, this is the program of its diagnosis, without further
-    compilation.
+    If the vessel is a patched one, this is the program of its diagnosis with the usual settings,
+    without further compilation.
 
     Args:
         vessel: Vessel file, or a patched one.

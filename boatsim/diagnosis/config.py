@@ -1,9 +1,14 @@
 """The configuration of a diagnosis: all thresholds, priors, tolerances and limits of its stages.
 
-A `DiagnosisConfig` holds one frozen group of settings per stage. Each setting has a default, a unit
-and the reason for its value. Users change settings by their dotted names, such as `select.odds`:
-with `boatsim diagnose --set`, or with the argument `settings` of `boatsim.diagnose`. The values
-used are written into diagnosis.json.
+A `DiagnosisConfig` holds frozen groups of settings, named after the stages of
+`boatsim.diagnosis.pipeline`: load, check (`checks`), fit, select, decide, describe, plan, adopt,
+validate and answer. The stage adopt has no group; it uses `fit.undetermined_sd` and
+`validate.harmful`. The groups `filter` and `locate` belong to methods that several stages use.
+
+Each setting has a default, a unit and the reason for its value. Users change settings by their
+dotted names, such as `select.odds`: with `boatsim diagnose --set`, or with the argument `settings`
+of `boatsim.diagnose`. The values used are written into diagnosis.json. Numbers that only guard
+against rounding, define a unit or describe a format stay in the modules that use them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,7 +33,7 @@ def setting(
 ) -> Any:
     """Declare a numerical setting of a diagnosis with its unit, reason and allowed range.
 
-    It is a field of a dataclass that holds the settings of one stage.
+    It is a field of a dataclass that holds the settings of one group.
 
     Args:
         default: Value used unless the user gives another; its type is the type of the setting.
@@ -116,6 +121,14 @@ class LoadConfig:
         "no noise: a force that is switched twice a second at 100 Hz has 6 % of them.",
         50.0,
         100.0,
+    )
+    input_noise_order: int = setting(
+        3,
+        "count",
+        "Order of the differences of a measured force in which its noise is estimated; they "
+        "contain little of the motion.",
+        1,
+        20,
     )
     input_noise_time: float = setting(
         0.05,
@@ -229,6 +242,20 @@ class FilterConfig:
         "push by hand may act when a recording begins.",
         low=1e-6,
     )
+    rate_time: float = setting(
+        1.0,
+        "s",
+        "Shortest time over which positions are differenced for the prior of the initial rates, so "
+        "that their noise does not count as speed.",
+        low=1e-3,
+    )
+    rate_rows: int = setting(4, "count", "The same in rows.", low=1)
+    usual_rate: float = setting(
+        1.0,
+        "m/s, rad/s",
+        "Prior sd of an initial rate that a single recorded position does not determine.",
+        low=1e-6,
+    )
     smoother_passes: int = setting(
         4, "count", "Largest number of smoothing passes about improved initial rates.", low=1
     )
@@ -260,6 +287,14 @@ class ChecksConfig:
         "A body does not rest while a recorded wave moves; the share of the largest range of its "
         "elevation that the wave has where it has not arrived or is reflected away.",
         low=0.0,
+    )
+    rest_min_window: float = setting(
+        0.9,
+        "1",
+        "Share of that time which the window at the end of a recording has at least; rows that are "
+        "missing at its edge do not matter.",
+        0.0,
+        1.0,
     )
     ignored_window: float = setting(
         12.0,
@@ -400,7 +435,34 @@ class ChecksConfig:
         low=1.0,
     )
     pose_clock_margin: float = setting(
-        1.5, "1", "Cutoff frequency over that below which 95 % of the energy lies.", low=1.0
+        1.5, "1", "Cutoff frequency over that below which nearly all of the energy lies.", low=1.0
+    )
+    pose_clock_energy_share: float = setting(
+        0.95,
+        "1",
+        "Share of the energy of an accelerometer below the frequency that is multiplied by this "
+        "margin; the rest is noise.",
+        0.0,
+        1.0,
+    )
+    pose_clock_max_jitter: float = setting(
+        0.5,
+        "usual steps",
+        "Largest difference between the steps of the rows; spectra need equal steps.",
+    )
+    pose_clock_padding: float = setting(
+        0.25,
+        "1",
+        "Length of the straight line that continues a signal to a whole period, as a share of the "
+        "signal, so that it does not jump where it is repeated.",
+        0.0,
+        10.0,
+    )
+    pose_clock_neighbours: int = setting(
+        2,
+        "count",
+        "Delays on either side that a delay must surpass to be refined.",
+        low=1,
     )
     pose_clock_min_rows: int = setting(
         200, "count", "Rows that a comparison of clocks needs.", low=20
@@ -414,6 +476,14 @@ class ChecksConfig:
         "A time jump is longer than this many usual steps, and than the Froude time; a pause of "
         "the logger is shorter.",
         low=1.0,
+    )
+    clock_jump_quantile: float = setting(
+        0.75,
+        "1",
+        "Quantile of the steps of the position that is taken as the usual one of a boat under way; "
+        "the median may be one at rest.",
+        0.0,
+        1.0,
     )
     clock_jump_max_distance: float = setting(
         3.0, "1", "Usual steps of the position that a boat moves at most across a time jump."
@@ -558,10 +628,25 @@ class ChecksConfig:
         "The heading changes less over a straight stretch and over the one before it, so that "
         "the drift angle of turns has died out.",
     )
+    course_min_window: float = setting(
+        0.9,
+        "1",
+        "Share of `course_window` that a stretch lasts at least; shorter ones end at a gap or at "
+        "the end of the recording.",
+        0.0,
+        1.0,
+    )
+    course_speed_quantile: float = setting(
+        0.9,
+        "1",
+        "Quantile of the distance per stretch that is taken as the one at high speed.",
+        0.0,
+        1.0,
+    )
     course_min_speed: float = setting(
         0.5,
         "1",
-        "Share of the 90 % quantile of the distance per stretch, below which noise dominates the "
+        "Share of the distance per stretch at high speed, below which noise dominates the "
         "direction of the course.",
     )
     course_min_stretches: int = setting(
@@ -583,6 +668,13 @@ class ChecksConfig:
     )
     excitation_min_speed_variation: float = setting(
         0.2, "1", "Range of the speed over its mean needed to identify nonlinear damping."
+    )
+    excitation_speed_quantiles: tuple[float, ...] = setting(
+        (0.05, 0.95),
+        "1",
+        "Quantiles of the speed between which this range lies, so that outliers do not widen it.",
+        0.0,
+        1.0,
     )
     excitation_min_command_span: float = setting(
         0.02, "1", "Share of its range within which a command is considered constant."
@@ -615,6 +707,13 @@ class ChecksConfig:
         "has -0.8.",
         low=-1.0,
         high=1.0,
+    )
+    interpolation_noise_quantiles: tuple[float, ...] = setting(
+        (0.05, 0.95),
+        "1",
+        "Quantiles to which these differences are limited, so that single jumps do not decide.",
+        0.0,
+        1.0,
     )
     interpolation_min_noise_digits: float = setting(
         5.0,
@@ -676,7 +775,19 @@ class ChecksConfig:
         "positions have a share near 0.",
     )
     jump_min_step: float = setting(
-        3.0, "1", "A jump is larger than this multiple of the 99 % quantile of all steps.", low=1.0
+        3.0, "1", "A jump is larger than this multiple of a high quantile of all steps.", low=1.0
+    )
+    jump_step_quantile: float = setting(
+        0.99, "1", "The quantile in the setting `jump_min_step`.", 0.0, 1.0
+    )
+    jump_min_rows: int = setting(
+        8,
+        "jump_course_rows",
+        "Rows in which jumps are sought, at least; in fewer the usual gap is not known.",
+        low=2,
+    )
+    jump_sampled_rows: int = setting(
+        200, "count", "Rows, evenly spaced, from which the usual gap is computed.", low=1
     )
     jump_min_gap: float = setting(
         20.0, "1", "Usual gaps between the courses before and after a row by which one is a jump."
@@ -690,6 +801,12 @@ class ChecksConfig:
         "Rows per large step, at least; with more large steps the signal is noisy, and none is a "
         "jump.",
         low=1,
+    )
+    jump_spare_steps: int = setting(
+        3,
+        "count",
+        "Large steps in addition to these that are allowed: a short recording may have some jumps.",
+        low=0,
     )
     jump_min_share: float = setting(
         0.5, "1", "Share of a step that must persist, so that it is a jump and no outlier."
@@ -787,6 +904,12 @@ class ChecksConfig:
         0.1, "s", "Smallest delay that is reported, on a hull of 1.2 m."
     )
     rates_max_delay: float = setting(2.0, "s", "Largest delay that is sought, on a hull of 1.2 m.")
+    rates_min_delay_rows: int = setting(
+        2, "rows", "Smallest delay that is reported; a delay of one row is that of a logger.", low=1
+    )
+    rates_min_durations: int = setting(
+        10, "1", "Duration of a recording in largest delays, so that enough of it remains.", low=3
+    )
     rates_max_delay_residual: float = setting(
         0.3, "1", "Share of the mean square difference that a delay may leave."
     )
@@ -814,6 +937,14 @@ class ChecksConfig:
     clock_min_stretches: int = setting(
         12, "count", "Stretches with such a change that are needed for a statement.", low=4
     )
+    clock_min_agreement: float = setting(
+        0.9,
+        "1",
+        "Share of these stretches in which heading and yaw rate turn in the same sense; with less "
+        "one of them is wrong, and neither shows the clock.",
+        0.0,
+        1.0,
+    )
     clock_min_correlation: float = setting(
         0.5,
         "1",
@@ -830,11 +961,26 @@ class ChecksConfig:
         "Standard deviation of the clock rate from which a wander is reported: over a free run "
         "it is as large as other errors of a good model.",
     )
+    clock_stated_quantiles: tuple[float, ...] = setting(
+        (0.05, 0.95),
+        "1",
+        "Quantiles of the clock rate that the finding of a wander states.",
+        0.0,
+        1.0,
+    )
     clock_min_rate: float = setting(
         0.03,
         "1",
         "Constant error of the clock rate that is reported; delays and interpolation of sensors "
         "cause up to 0.025 in turns.",
+    )
+    clock_min_track_share: float = setting(
+        0.5,
+        "1",
+        "Share of that error which the track must show over all stretches, straight ones included; "
+        "delays and interpolation act in turns only.",
+        0.0,
+        1.0,
     )
     clock_gain_sds: float = setting(
         3.0,
@@ -927,10 +1073,14 @@ class ChecksConfig:
         "Unexplained force, relative to the force of the drives, from which reinterpretations "
         "are compared.",
     )
-    unexplained_min_arm: float = setting(
-        0.02,
+    unexplained_min_lever: float = setting(
+        0.08,
         "length",
-        "A quarter of the least lever of the drives in yaw, for drives that hardly turn the hull.",
+        "Least lever of the drives in yaw to which an unexplained moment is related, for drives "
+        "that hardly turn the hull.",
+    )
+    unexplained_rows: int = setting(
+        100, "count", "Rows, evenly spaced, from which the force of the drives is computed.", low=1
     )
     compare_min_gain: float = setting(
         60.0, "nats", "Evidence that a reinterpretation must gain over the log as recorded."
@@ -1017,6 +1167,14 @@ class LocateConfig:
         "Multiple of the assumed disturbance level to which the latent force is limited when the "
         "residual force is judged.",
         low=1e-3,
+    )
+    coefficient_step: float = setting(
+        0.1,
+        "prior sd",
+        "Step of a coefficient for the derivative of the missing force by it; the force is nearly "
+        "linear over this distance.",
+        1e-6,
+        10.0,
     )
     region_max_p: float = setting(
         0.01, "1", "Largest corrected p-value of a region that is reported.", high=1.0
@@ -1134,6 +1292,21 @@ class FitConfig:
         "With more damping than this a step is so short that its agreement with the prediction "
         "is no sign of convergence.",
     )
+    first_damping: float = setting(
+        1e-3,
+        "1",
+        "Damping of the first Gauss-Newton step; 0.1 doubles the weight of the prior, so that this "
+        "one hardly shortens the step.",
+    )
+    least_damping: float = setting(
+        1e-2, "1", "Damping that a failed attempt starts from, at least.", low=1e-9
+    )
+    damping_growth: float = setting(
+        10.0,
+        "1",
+        "Factor by which damping grows after a failed attempt and falls after a step.",
+        low=1.01,
+    )
     agreement: float = setting(
         0.1,
         "nats",
@@ -1207,6 +1380,47 @@ class FitConfig:
     search_reach: float = setting(
         2.0, "1", "Largest move of such a search along one coordinate, in steps.", low=1.0
     )
+    force_search_step: float = setting(
+        0.5,
+        "1",
+        "First step of such a search for the level of the latent force and the spectra of "
+        "stochastic forces, in logarithms of levels and in prior sds: the accuracy of the start.",
+        low=1e-3,
+    )
+    noise_search_step: float = setting(
+        0.6,
+        "1",
+        "First step of the first search for all noise levels, in their logarithms.",
+        low=1e-3,
+    )
+    noise_fine_search_step: float = setting(
+        0.4, "1", "First step of the second one, from the result of the first.", low=1e-3
+    )
+    spectrum_search_step: float = setting(
+        0.7,
+        "1",
+        "First step of a search for level and correlation time of the latent force, in their "
+        "logarithms: the prior sd of the correlation time.",
+        low=1e-3,
+    )
+    force_start: float = setting(
+        0.7,
+        "1",
+        "Logarithm of the latent force over its assumed level, from which the search for noise "
+        "levels starts: twice that level, because a vessel file is rarely complete.",
+    )
+    noise_start_range: float = setting(
+        1.2,
+        "1",
+        "Largest distance of the logarithm of sensor noise from its specified level at the start: "
+        "three prior sds.",
+    )
+    noise_min_rows: int = setting(
+        8,
+        "count",
+        "A signal with more rows than this gives the start of its noise by its third differences.",
+        low=4,
+    )
     correlation_time_steps: int = setting(
         2, "count", "Halvings or doublings of the correlation time that are tested.", low=0
     )
@@ -1249,11 +1463,25 @@ class FitConfig:
         "this; four times the limit of a single outlier.",
         low=5.0,
     )
+    lost_largest_share: float = setting(
+        0.5,
+        "1",
+        "Share of the largest such error that is the limit where it is lower than `lost_sds`, so "
+        "that at least the recording with the largest errors is named.",
+        0.0,
+        1.0,
+    )
     lost_window: float = setting(
         2.0,
         "correlation time",
         "Errors stay outside if their rms over this time, from an outlier on, is outside.",
         low=0.5,
+    )
+    lost_lead: float = setting(
+        0.5,
+        "1",
+        "Time before the loss of a recording, in such times, from which on the largest missing "
+        "force gives the axis; a force acts before the motion has changed.",
     )
     lost_raise: float = setting(
         4.0,
@@ -1286,6 +1514,13 @@ class SelectConfig:
         "count",
         "Largest number of effects in one answer; further ones would have almost no data of "
         "their own.",
+        low=1,
+    )
+    fewest_instances: int = setting(
+        3,
+        "count",
+        "Drives from which on an error of each single one is a candidate; `thrust_imbalance` "
+        "describes the difference of two.",
         low=1,
     )
     budget: int = setting(
@@ -1343,6 +1578,13 @@ class SelectConfig:
         "A refit of a search that saves work ends where its parameters are this close to those of "
         "the fit that it starts from, without a gain: it leads back to it.",
         low=0.0,
+    )
+    calm_steps: int = setting(
+        4,
+        "count",
+        "Gauss-Newton steps of a refit with the latent force at its assumed level, before all "
+        "levels are fitted again.",
+        low=1,
     )
     further_fits: int = setting(
         3,
@@ -1424,6 +1666,9 @@ class SelectConfig:
         0.0,
         1.0,
     )
+    most_look_alikes: int = setting(
+        3, "count", "Look-alikes that are reported of an identified effect, the best ones.", low=0
+    )
     most_rivals: int = setting(
         3, "count", "Rivals that are fitted in the place of each identified effect.", low=0
     )
@@ -1452,6 +1697,13 @@ class SelectConfig:
     )
     most_full_fits: int = setting(
         6, "count", "Candidates on top of one model that are fitted in full.", low=1
+    )
+    start_steps: int = setting(
+        2,
+        "count",
+        "Gauss-Newton steps from each starting point of a candidate whose full fit leaves much "
+        "unexplained; the best one is then fitted in full.",
+        low=1,
     )
     screening_failure: float = setting(
         8.0,
@@ -1524,7 +1776,8 @@ class DecideConfig:
     logs of the seeds 4 to 6, and that of `alternative` to the 306 logs with a cause among the first
     419 of seed 9 and the first 210 of seed 10, when this sign was related to the axes of an effect.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
-    Each multiplies a feature of `boatsim.diagnosis.open_set.probability`.
+    Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
+    `largest_...` and `..._range` at the end limit these features.
     """
 
     least_probability: float = setting(
@@ -1590,10 +1843,31 @@ class DecideConfig:
         "an effect is compared: quartiles.",
         low=2,
     )
-    law_error: float = setting(
+    prior_factor_sd: float = setting(
+        100.0,
+        "1",
+        "Prior sd of the size of an effect on a part of the data, as a share of the fitted size. "
+        "It is wide and only keeps the equations regular where a part has no information.",
+        low=1.0,
+    )
+    comparable_factor_sd: float = setting(
+        1.0,
+        "1",
+        "Sd of that size below which a part is compared with others; with more it does not "
+        "distinguish the fitted size from none.",
+        low=1e-6,
+    )
+    unknown_factor_sd: float = setting(
+        1e6,
+        "1",
+        "Sd of that size where held-out recordings are missing or cannot be simulated.",
+        low=1.0,
+    )
+    size_tolerance: float = setting(
         0.1,
         "1",
-        "Share of an effect by which a true law may differ from the candidate's.",
+        "Share of the size of an effect by which parts of the data may differ although the effect "
+        "is true: its law is never exactly that of the candidate.",
         0.0,
     )
     least_axis_share: float = setting(
@@ -1710,7 +1984,7 @@ class DecideConfig:
         "implausible size.",
         low=-inf,
     )
-    at_bound: float = setting(
+    exceeds_range: float = setting(
         -3.98,
         "1",
         "Weight: whether a parameter is at a bound of its range and a recording requires more.",
@@ -1747,6 +2021,42 @@ class DecideConfig:
         "1",
         "Weight: log of the number of identified effects: true causes are few.",
         low=-inf,
+    )
+    least_held_out_gain: float = setting(
+        0.1,
+        "nats",
+        "Lower limit of the gain in the features `held_out_gain` and `stochastic_gain`, whose "
+        "logarithm they are; less is no evidence. Beyond this and the following limits of features "
+        "the campaign has few examples, and no single one shall decide.",
+        low=1e-9,
+    )
+    held_out_significance_range: tuple[float, ...] = setting(
+        (-3.0, 10.0), "sd", "Limits of the feature `held_out_significance`.", low=-inf
+    )
+    largest_held_out_deviation: float = setting(
+        8.0, "sd", "Upper limit of the feature `held_out_deviation`."
+    )
+    largest_variation: float = setting(
+        2.0, "1", "Upper limit of the features `times_apart` and `ranges_apart`."
+    )
+    largest_unexplained: float = setting(4.0, "1", "Upper limit of the feature `unexplained`.")
+    largest_structure: float = setting(1.0, "1", "Upper limit of the feature `structure`.")
+    largest_alternative: float = setting(2.0, "1", "Upper limit of the feature `alternative`.")
+    largest_coefficient_shift: float = setting(
+        4.0, "prior sd", "Upper limit of the feature `coefficient_shift`."
+    )
+    least_reference_gain: float = setting(
+        1.0,
+        "nats",
+        "Evidence of an effect, or of all effects, to which the features `alternative` and "
+        "`structure` are related, at least.",
+        low=1e-9,
+    )
+    largest_log_odds: float = setting(
+        30.0,
+        "nats",
+        "Limit of the log of the odds; beyond it the probability is 0 or 1 in every printed digit.",
+        high=700.0,
     )
 
 
@@ -1826,7 +2136,10 @@ class AnswerConfig:
         1.0,
     )
     at_bound: float = setting(
-        1e-3, "1", "A value within this relative distance of a bound is reported as at the bound."
+        1e-3,
+        "1",
+        "A value within this relative distance of a bound is reported as at the bound, and counts "
+        "as such for the probability of an effect.",
     )
     least_improvement: float = setting(
         1.1,
@@ -1834,6 +2147,13 @@ class AnswerConfig:
         "The report calls a result a hint if no rms error on held-out recordings decreases by "
         "more than this factor.",
         low=1.0,
+    )
+    unchanged_share: float = setting(
+        0.05,
+        "1",
+        "The report calls an rms error unchanged if it differs by less than this share.",
+        0.0,
+        1.0,
     )
     refined_sds: float = setting(
         2.0,
@@ -1857,6 +2177,19 @@ class DescribeConfig:
 
     most_terms: int = setting(
         5, "count", "Largest number of terms: a longer formula would explain noise.", low=0
+    )
+    force_placeholders: int = setting(
+        5,
+        "count",
+        "Placeholder effects for forces in the compiled program of a diagnosis, so that a term "
+        "needs no compilation: as many as a formula has terms. Another number compiles a program.",
+        low=0,
+    )
+    thrust_placeholders: int = setting(
+        2,
+        "count",
+        "The same for changes of the thrust: one for each of two drives, or for each direction.",
+        low=0,
     )
     budget: int = setting(
         250_000_000,
@@ -1893,6 +2226,22 @@ class DescribeConfig:
         "need.",
         1e-4,
         1.0,
+    )
+    wavelength_step: float = setting(
+        0.15,
+        "1",
+        "Change of a wavelength by one grammar step, as a share of it: about the distance between "
+        "the wavelengths that are tested.",
+        1e-3,
+        1.0,
+    )
+    oscillation_step: float = setting(
+        0.5,
+        "periods",
+        "Change of the number of periods in a recording by one grammar step: the distance between "
+        "the periods that are tested.",
+        1e-3,
+        10.0,
     )
     refinement_moves: int = setting(
         3, "count", "Largest number of moves of a term with one size of change.", low=1
@@ -1999,6 +2348,13 @@ class PlanConfig:
     refit_min_gain: float = setting(
         0.1, "nats", "Such a refit ends when a step gains less than this."
     )
+    posterior_step: float = setting(
+        0.05,
+        "posterior sd",
+        "Step of a parameter for the derivative of an expected motion by it.",
+        1e-6,
+        1.0,
+    )
     boat_duration: float = setting(
         40.0, "s", "Duration of a manoeuvre of a boat of 1.2 m.", low=1.0
     )
@@ -2060,19 +2416,22 @@ class PlanConfig:
 
 @dataclass(frozen=True)
 class DiagnosisConfig:
-    """All settings of a diagnosis (thresholds, priors, tolerances, limits), one group per stage."""
+    """All settings of a diagnosis (thresholds, priors, tolerances, limits), grouped by stage.
+
+    The groups `filter` and `locate` belong to methods that several stages use.
+    """
 
     load: LoadConfig = LoadConfig()
-    filter: FilterConfig = FilterConfig()
     checks: ChecksConfig = ChecksConfig()
-    locate: LocateConfig = LocateConfig()
     fit: FitConfig = FitConfig()
     select: SelectConfig = SelectConfig()
     decide: DecideConfig = DecideConfig()
-    validate: ValidateConfig = ValidateConfig()
-    answer: AnswerConfig = AnswerConfig()
     describe: DescribeConfig = DescribeConfig()
     plan: PlanConfig = PlanConfig()
+    validate: ValidateConfig = ValidateConfig()
+    answer: AnswerConfig = AnswerConfig()
+    filter: FilterConfig = FilterConfig()
+    locate: LocateConfig = LocateConfig()
 
 
 DEFAULT = DiagnosisConfig()

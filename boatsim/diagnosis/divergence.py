@@ -89,7 +89,7 @@ def find_divergences(
         forces: Missing force of each recording.
     """
     passes = _passes(problem.with_recordings(recordings), problem.nominal_hypothesis()).passes
-    limit = problem.config.fit.lost_sds
+    config = problem.config.fit
     lasting = []
     for mapped, passed in zip(recordings, passes, strict=True):
         lasting.append(_lasting_errors(problem, mapped, passed))
@@ -99,7 +99,7 @@ def find_divergences(
         for mapped, passed in zip(recordings, passes, strict=True):
             lasting.append(_by_row(mapped, passed).max(axis=1))
         largest = max(float(errors.max()) for errors in lasting)
-    limit = min(limit, 0.5 * largest)
+    limit = min(config.lost_sds, config.lost_largest_share * largest)
     found = []
     for mapped, passed, errors, force in zip(recordings, passes, lasting, forces, strict=True):
         outside = np.flatnonzero(errors > limit)
@@ -192,7 +192,8 @@ def _divergence(
     axes = dof_in_state_order(problem.program.vessel)
     since = float(mapped.times[row])
     window = _window(problem)
-    near = (force.t > since - 0.5 * window) & (force.t < since + window)
+    before = problem.config.fit.lost_lead * window
+    near = (force.t > since - before) & (force.t < since + window)
     if near.any():
         i = int(np.argmax(np.mean((force.mean[near] / force.sd[near]) ** 2, axis=0)))
     else:

@@ -566,8 +566,8 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
         rate = nq + code
         if code < nq:
             mean[code] = y[0]
-            speed = _rates_of_change(t, y)
-            covariance[rate, rate] = 1.0
+            speed = _rates_of_change(t, y, mapped.config)
+            covariance[rate, rate] = mapped.config.usual_rate**2
             if len(speed):
                 covariance[rate, rate] = float(np.mean(speed**2)) + LEAST_RATE_VARIANCE
                 rates[code] = speed[0]
@@ -585,9 +585,10 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
     return InitialState(mean, covariance, rates)
 
 
-def _rates_of_change(t: Array, y: Array) -> Array:
-    """Rates of change of a signal over four rows, but at least one second."""
-    gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t)))))
+def _rates_of_change(t: Array, y: Array, config: FilterConfig) -> Array:
+    """Rates of change of a signal over some rows, but at least some time."""
+    time = max(config.rate_time, config.rate_rows * float(np.median(np.diff(t))))
+    gap = np.searchsorted(t, t + time)
     gap = gap.clip(max=len(t) - 1)
     far = gap > np.arange(len(t))
     return np.asarray((y[gap] - y)[far] / (t[gap] - t)[far])
@@ -703,7 +704,9 @@ def _speed_of_share(mapped: MappedRecording, share: float) -> float:
     for c, code in enumerate(mapped.codes.tolist()):
         recorded = np.isfinite(mapped.measured[:, c])
         if code < len(axes) and axes[code] in ("surge", "sway") and recorded.any():
-            rates = _rates_of_change(mapped.times[recorded], mapped.measured[recorded, c])
+            rates = _rates_of_change(
+                mapped.times[recorded], mapped.measured[recorded, c], mapped.config
+            )
             if len(rates):
                 speeds.append(float(np.quantile(np.abs(rates), 1.0 - share)))
     if speeds:

@@ -20,10 +20,6 @@ from boatsim.physics.base import Array
 
 TINY = 1e-300  # variance of what is known exactly
 ON_BOUND = 1e-12  # distance from a bound at which a parameter is held there
-# of a step: damping at first, least damping after a failed attempt, and its growth per attempt
-FIRST_DAMPING = 1e-3
-LEAST_DAMPING = 1e-2
-DAMPING_GROWTH = 10.0
 LOST = 1e-6  # [nats] that a step may lose by rounding
 
 
@@ -136,11 +132,11 @@ class ParameterSpace:
             theta: (F,) parameters before the step.
             A: (F, F) information J.T @ J of the derivatives J of the whitened errors by theta / sd.
             g: (F,) gradient of the score by theta / sd.
-            damping: Damping of the step.
+            damping: Damping of the step; 0.1 doubles the weight of the prior.
         """
         free = np.diag(A) > 0.0
         step = np.zeros(len(g))
-        for _ in range(4):
+        for _ in range(4):  # seldom reached: the step is limited to the bounds in any case
             step[:] = 0.0
             if not free.any():
                 break
@@ -298,7 +294,7 @@ def _ascend(hypothesis: _Hypothesis, theta: Array, iterations: int, enough: floa
     problem, space = hypothesis.problem, hypothesis.space
     config = problem.config.fit
     here = hypothesis.evaluate_at(space.clip(theta))
-    damping, known = FIRST_DAMPING, False
+    damping, known = config.first_damping, False
     J, rest = np.zeros((1, len(theta))), np.zeros(len(theta))
     for _ in range(iterations):
         if not known:
@@ -311,7 +307,7 @@ def _ascend(hypothesis: _Hypothesis, theta: Array, iterations: int, enough: floa
             if np.isfinite(trial.score) and trial.score > here.score - LOST:
                 further, gain = trial, trial.score - here.score
                 break
-            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
+            damping = max(damping, config.least_damping) * config.damping_growth
         if further is None:
             if not known:
                 break
@@ -323,7 +319,7 @@ def _ascend(hypothesis: _Hypothesis, theta: Array, iterations: int, enough: floa
         step = (further.theta - here.theta) / space.sd
         before = here
         here = replace(further, score=before.score + gain)
-        damping /= DAMPING_GROWTH
+        damping /= config.damping_growth
         if (gain < enough or agrees) and (not known or predicted < enough):
             break
         known = gain > config.broyden_share * predicted

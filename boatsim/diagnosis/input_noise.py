@@ -18,8 +18,6 @@ from boatsim.physics.base import AXES, Array, Force, make_motion
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, TimedCommands
 
-ORDER = 3  # of the differences, which contain little of the motion
-
 
 def input_noise_density(
     vessel: Vessel, recording: Recording, axes: Sequence[str], config: LoadConfig
@@ -102,9 +100,9 @@ def _channel_density(recording: Recording, channel: str, config: LoadConfig) -> 
     source = recording.orders
     if source is None:
         source = TimedCommands(recording.t, recording.signals)
-    t = source.t
-    if channel not in source.signals or len(t) <= 2 * ORDER:
+    t, order = source.t, config.input_noise_order
+    if channel not in source.signals or len(t) <= 2 * order:
         return 0.0
-    squares = np.diff(source.signals[channel], ORDER) ** 2 / comb(2 * ORDER, ORDER)
+    squares = np.diff(source.signals[channel], order) ** 2 / comb(2 * order, order)
     noise = squares[squares <= np.percentile(squares, config.input_noise_percentile)]
     return float(np.mean(noise) * np.median(np.diff(t)))

@@ -11,17 +11,7 @@ from boatsim.diagnosis.priors import CHI_SQUARE_MEDIAN
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
 from boatsim.physics.base import Array, DriftingMeasurement
 
-# first steps along a coordinate, in logarithms of levels and prior sds of parameters
-FORCE_STEP = 0.5
-NOISE_STEP = 0.6
-FINE_NOISE_STEP = 0.4
-TIME_STEP = 0.7
-# start of the fit of sensor noise: log of the force above the prior level, and the largest distance
-# of the log of the noise from the specified level
-FORCE_START = 0.7
-NOISE_START_RANGE = 1.2
 THIRD_DIFFERENCE = 20.0  # sum of the squared binomial coefficients of a third difference
-FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
 def log_latent_force_prior(problem: Problem, levels: NoiseLevels) -> float:
@@ -106,8 +96,9 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
         found: Fit from which the search starts.
         enough: Accuracy [nats]; None: the rough one of levels that are fitted again later.
     """
+    config = problem.config.fit
     if enough is None:
-        enough = problem.config.fit.rough_gain
+        enough = config.rough_gain
     on = problem.program.effect_switches(found.effects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
     free = [found.free[j] for j in searched]
@@ -139,7 +130,7 @@ def fit_latent_force_level(problem: Problem, found: Fit, enough: float | None = 
     noise = _log_noise(found.levels, families)
     logs = [np.log(found.levels.force), _log_input_noise(found.levels)]
     begin = np.concatenate([found.theta[searched] / sd, noise, *logs])
-    _, x = maximize(log_posterior, begin, FORCE_STEP, enough, problem.config.fit)
+    _, x = maximize(log_posterior, begin, config.force_search_step, enough, config)
     levels, theta = noise_levels_and_parameters(x)
     return replace(found, levels=levels, theta=theta)
 
@@ -182,8 +173,8 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
 
         return maximize(log_posterior, x, step, enough, config)[1]
 
-    low, high = specified - NOISE_START_RANGE, specified + NOISE_START_RANGE
-    start = np.log(prior_levels.force) + FORCE_START
+    low, high = specified - config.noise_start_range, specified + config.noise_start_range
+    start = np.log(prior_levels.force) + config.force_start
     x = np.concatenate([start, np.clip(rough, low, high), _log_input_noise(prior_levels)])
     about = problem.filter(found.free, found.theta, on, noise_levels(x))
     for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
@@ -196,11 +187,10 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
             break
         x[:n] += 1.0
         about = problem.filter(found.free, found.theta, on, noise_levels(x))
-    x = maximize_noise(x, about, NOISE_STEP, config.rough_gain)
+    x = maximize_noise(x, about, config.noise_search_step, config.rough_gain)
     about = problem.filter(found.free, found.theta, on, noise_levels(x))
-    return replace(
-        found, levels=noise_levels(maximize_noise(x, about, FINE_NOISE_STEP, config.fine_gain))
-    )
+    x = maximize_noise(x, about, config.noise_fine_search_step, config.fine_gain)
+    return replace(found, levels=noise_levels(x))
 
 
 def fit_latent_force_spectrum(problem: Problem, found: Fit) -> NoiseLevels:
@@ -230,7 +220,8 @@ def fit_latent_force_spectrum(problem: Problem, found: Fit) -> NoiseLevels:
         return likelihood + log_latent_force_prior(problem, noise_levels(x)) + float(prior)
 
     begin = np.array([0.0, np.log(found.levels.time_constant)])
-    return noise_levels(maximize(log_posterior, begin, TIME_STEP, config.fine_gain, config)[1])
+    step = config.spectrum_search_step
+    return noise_levels(maximize(log_posterior, begin, step, config.fine_gain, config)[1])
 
 
 def _roughness(problem: Problem, family: str) -> float:
@@ -239,7 +230,7 @@ def _roughness(problem: Problem, family: str) -> float:
     for mapped in problem.recordings:
         for c, own in enumerate(mapped.families):
             y = mapped.measured[np.isfinite(mapped.measured[:, c]), c]
-            if own == family and len(y) > FEWEST_ROWS:
+            if own == family and len(y) > problem.config.fit.noise_min_rows:
                 found.append(np.diff(y, 3) ** 2 / THIRD_DIFFERENCE)
     if not found:
         return 0.0

@@ -1,7 +1,7 @@
-"""The pipeline of a diagnosis: load, check, fit, select, decide, describe, plan, adopt, validate.
+"""The pipeline of a diagnosis.
 
-Each stage is a function from the results of earlier stages to a frozen result. It can be called
-alone.
+Its stages are load, check, fit, select, decide, describe, plan, adopt, validate and answer. Each is
+a function from the results of earlier stages to a frozen result. It can be called alone.
 """
 
 import json

@@ -18,7 +18,10 @@ from boatsim.recordings.table import Recording
 
 REFERENCE_LENGTH = 1.2  # [m] of the hull for which times of the configuration are given
 CHI_SQUARE_MEDIAN = 0.455  # of the square of a standard normal variable
-# kinds of coefficients that are uncertain where no uncertainty is specified
+# Kinds of coefficients that are uncertain where no uncertainty is specified. Added mass is not one
+# of them, because its error is a candidate effect (`added_mass_error`). Settings are numbers, so
+# that this list of names is no setting; a vessel or the notes may specify the uncertainty of other
+# kinds.
 UNCERTAIN = ("damping", "thrust", "restoring", "wind", "wave")
 
 

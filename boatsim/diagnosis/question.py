@@ -94,7 +94,8 @@ def set_up_estimation_problem(
     libraries, programs = dict[Path | None, CandidateLibrary](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
-        libraries[path] = candidate_library(known, loaded.library, {**facts, **track}, columns)
+        known_facts = {**facts, **track}
+        libraries[path] = candidate_library(known, loaded.library, known_facts, columns, config)
         candidates = libraries[path].compiled_effects if with_candidates else ()
         programs[path] = Program(known, candidates)
     levels = prior_noise_levels(vessel, loaded.fitted, config)

@@ -6,6 +6,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 
+# The constants define the unit of `select.budget` and `describe.budget` and are no settings.
 # Work per row and degree of freedom squared, relative to an integration step and degree of freedom:
 # matrices of the covariance, derivatives of the motion, and the smoother. Fitted to the CPU times
 # of passes over the recordings of a hovercraft, a ship and a ship section.

@@ -25,7 +25,7 @@ EFFECTS = """Each page describes one effect of physics or measurement in `boatsi
 A diagnosis fits the parameters marked *fitted: yes* when it tests the effect as a candidate.
 Parameters *fitted as damping, thrust, added mass, restoring* or *wind* are coefficients of the
 vessel that are never known exactly; a diagnosis refits them within their specified uncertainty."""
-SETTINGS = """Every number that influences a verdict of the diagnosis is a setting.
+SETTINGS = """Thresholds, priors, tolerances and limits that influence a diagnosis are settings.
 
 `boatsim diagnose --set GROUP.NAME=VALUE` and the argument `settings` of `boatsim.diagnose` change
 one; `diagnosis.json` records the values used under `config`."""

@@ -342,6 +342,21 @@ def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(
     assert [e["name"] for e in without["effects"]] == ["command_delay"]
 
 
+# ---- numbers of candidates and placeholders
+
+
+def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> None:
+    select = replace(DEFAULT.select, fewest_instances=2)
+    describe = replace(DEFAULT.describe, force_placeholders=1, thrust_placeholders=0)
+    usual = candidate_library(BOAT)
+    other = candidate_library(BOAT, config=replace(DEFAULT, select=select, describe=describe))
+    single = {f"drive_gain_error_{name}" for name in BOAT.names_of("thruster")}
+    assert set(other.tested_names) - set(usual.tested_names) == single
+    assert "fewer than 3" in usual.inapplicable["drive_gain_error"]
+    assert [e.name for e in other.placeholders] == ["described_1"]
+    assert len(usual.placeholders) == 7
+
+
 # ---- walls are told, never assumed
 
 

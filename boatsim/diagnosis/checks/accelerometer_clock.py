@@ -142,9 +142,10 @@ def _best_clock(
     delays = np.arange(-longest, longest + 1e-9, config.pose_clock_step)
     values = np.array([[correlation(d, r) for r in rates] for d in delays])
     by_delay = values.max(axis=1)
+    around = config.pose_clock_neighbours
     refined = []
     for i, value in enumerate(by_delay.tolist()):
-        highest = value == by_delay[max(0, i - 2) : i + 3].max()
+        highest = value == by_delay[max(0, i - around) : i + around + 1].max()
         if highest and value > by_delay.max() - config.pose_clock_near:
             start = (float(delays[i]), float(rates[int(np.argmax(values[i]))]))
             refined.append(_refined_clock(correlation, start, config))
@@ -185,7 +186,7 @@ def _pairs(recording: Recording, config: ChecksConfig) -> list[_Pair]:
     if len(t) < config.pose_clock_min_rows:
         return []
     step = float(np.median(np.diff(t)))
-    if np.ptp(np.diff(t)) > 0.5 * step:
+    if np.ptp(np.diff(t)) > config.pose_clock_max_jitter * step:
         return []  # spectra need equal steps
     pairs = []
     for pose, witness in _witnesses(recording).items():
@@ -195,8 +196,9 @@ def _pairs(recording: Recording, config: ChecksConfig) -> list[_Pair]:
             continue
         filled = np.interp(t, t[measured], values[measured])
         cutoff = _cutoff(felt, step, config)
-        derived = _filtered(filled, step, cutoff, 2)
-        smooth = _filtered(felt, step, cutoff, 0)
+        padding = int(config.pose_clock_padding * len(t)) + 2
+        derived = _filtered(filled, step, cutoff, 2, padding)
+        smooth = _filtered(felt, step, cutoff, 0, padding)
         ratio = float(np.std(derived)) / max(float(np.std(smooth)), 1e-300)
         if 1.0 / config.pose_clock_max_ratio < ratio < config.pose_clock_max_ratio:
             pairs.append(_Pair(CubicSpline(t, derived), smooth))
@@ -208,16 +210,18 @@ def _cutoff(values: Array, step: float, config: ChecksConfig) -> float:
     power = np.abs(np.fft.rfft(values - values.mean())) ** 2
     share = np.cumsum(power) / max(float(power.sum()), 1e-300)
     frequencies = np.fft.rfftfreq(len(values), step)
-    return float(config.pose_clock_margin * frequencies[np.searchsorted(share, 0.95)])
+    nearly_all = np.searchsorted(share, config.pose_clock_energy_share)
+    return float(config.pose_clock_margin * frequencies[nearly_all])
 
 
-def _filtered(values: Array, step: float, cutoff: float, order: int) -> Array:
+def _filtered(values: Array, step: float, cutoff: float, order: int, padding: int) -> Array:
     """A derivative of a signal (N,), without what lies above a frequency [Hz].
 
-    The signal is continued to a whole period by a straight line, so that it does not jump there.
+    The signal is continued to a whole period by a straight line of `padding` rows, both ends
+    included, so that it does not jump there.
     """
     n = len(values)
-    back = np.linspace(values[-1], values[0], n // 4 + 2)[1:-1]
+    back = np.linspace(values[-1], values[0], padding)[1:-1]
     whole = np.concatenate([values, back])
     frequencies = np.fft.rfftfreq(len(whole), step)
     spectrum = np.fft.rfft(whole) * (2j * np.pi * frequencies) ** order

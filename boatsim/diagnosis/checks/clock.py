@@ -80,7 +80,7 @@ def _time_jumps(
     known = moved[np.isfinite(moved)]
     if not len(known):
         return none
-    distance = float(np.quantile(known, 0.75))
+    distance = float(np.quantile(known, config.clock_jump_quantile))
     ratio = config.clock_jump_steps
     long = steps > ratio * max(usual, time_scale / ratio)
     near = moved < config.clock_jump_max_distance * distance

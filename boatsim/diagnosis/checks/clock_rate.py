@@ -139,7 +139,7 @@ def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _RateComparison
 def _without_contradictions(found: _RateComparison, config: ChecksConfig) -> _RateComparison | None:
     """The stretches in which heading and yaw rate agree in their sense."""
     same = found.turning > 0.0
-    if same.sum() < max(config.clock_min_stretches, 0.9 * len(same)):
+    if same.sum() < max(config.clock_min_stretches, config.clock_min_agreement * len(same)):
         return None
     return _RateComparison(found.track[same], found.turning[same], found.weight[same])
 
@@ -165,7 +165,7 @@ def _wander(
         if run is None:
             continue
         own = next(rates)
-        lowest, highest = np.quantile(own, [0.05, 0.95])
+        lowest, highest = np.quantile(own, config.clock_stated_quantiles)
         evidence = (
             f"a second of the log lasted {lowest:.2f} to {highest:.2f} s, {own.mean():.2f} s on "
             "average, by the distances and the turns of the vessel. Track and heading agree in "
@@ -195,7 +195,7 @@ def _constant_rate(
     rate, sd = compared.mean_clock_rate()
     if abs(rate - 1.0) < max(config.clock_min_rate, config.clock_min_sds * sd):
         return []
-    if (everywhere - 1.0) / (rate - 1.0) < 0.5:
+    if (everywhere - 1.0) / (rate - 1.0) < config.clock_min_track_share:
         return []
     found = []
     for recording in recordings:

@@ -85,8 +85,10 @@ def _straight_stretches(
     turned_before = np.abs(psi - psi[before])
     straight = np.maximum(turned_after, turned_before) < config.course_max_turn
     ahead = (thrust > 0.0) & (thrust[after] > 0.0) & (thrust[before] > 0.0)
-    fast = np.abs(way) > config.course_min_speed * np.quantile(np.abs(way), 0.9)
-    complete = (at[after] - at >= 0.9 * duration) & (np.arange(len(at)) > before)
+    usual = np.quantile(np.abs(way), config.course_speed_quantile)
+    fast = np.abs(way) > config.course_min_speed * usual
+    least = config.course_min_window * duration
+    complete = (at[after] - at >= least) & (np.arange(len(at)) > before)
     kept = straight & ahead & fast & complete
     middle = 0.5 * (psi + psi[after])
     return (way * np.exp(-1j * middle))[kept], middle[kept]

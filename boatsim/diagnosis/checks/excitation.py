@@ -130,5 +130,5 @@ def _speed_variation(recording: Recording, vessel: Vessel, config: ChecksConfig)
     if int(later.sum()) < config.excitation_min_speed_rows:
         return None
     speed = np.hypot(x[after] - x, y[after] - y)[later] / (t[after] - t)[later]
-    low, high = np.quantile(speed, [0.05, 0.95])
+    low, high = np.quantile(speed, config.excitation_speed_quantiles)
     return float((high - low) / max(float(speed.mean()), 1e-9))

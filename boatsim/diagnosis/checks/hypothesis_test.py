@@ -148,16 +148,17 @@ def unexplained_force_share(problem: Problem, fit: Fit) -> float:
     """
     vessel = problem.program.vessel
     axes = dof_in_state_order(vessel)
+    config = problem.config.checks
     drives = np.zeros(len(axes))
     for recording in problem.recordings:
-        drives = np.maximum(drives, _drive_force(recording))
+        drives = np.maximum(drives, _drive_force(recording, config.unexplained_rows))
     thrust = 0.0
     for axis, force in zip(axes, drives.tolist(), strict=True):
         if axis in ("surge", "sway"):
             thrust = max(thrust, force)
     if not thrust > 0.0:
         return 0.0
-    least_moment = 4.0 * (problem.config.checks.unexplained_min_arm * thrust * vessel.length)
+    least_moment = config.unexplained_min_lever * thrust * vessel.length
     largest = 0.0
     for i, axis in enumerate(axes):
         if axis in PLANAR_AXES:
@@ -170,9 +171,9 @@ def _per_cent(share: float) -> str:
     return f"{format_number(100.0 * share, 2)} %"
 
 
-def _drive_force(recording: MappedRecording) -> Array:
-    """(axes,) rms force of the drives on the vessel at rest, over about 100 rows."""
-    step = max(1, len(recording.times) // 100)
+def _drive_force(recording: MappedRecording, rows: int) -> Array:
+    """(axes,) rms force of the drives on the vessel at rest, over about so many rows."""
+    step = max(1, len(recording.times) // rows)
     held = nominal_forces.actuator_states(recording)[::step]
     rest = np.zeros((len(held), 2 * recording.program.module.NQ))
     forces = nominal_forces.body_forces(recording, rest, held, recording.values)

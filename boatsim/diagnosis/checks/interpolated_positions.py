@@ -111,7 +111,8 @@ def _rule_of_succession(rows: NDArray[np.bool_]) -> float:
 
 def _is_noisy(differences: Array, digit: float, config: ChecksConfig) -> bool:
     """Whether fourth differences (N,) are those of white noise and larger than rounding."""
-    inside = np.clip(differences, *np.quantile(differences, [0.05, 0.95]))
+    limits = np.quantile(differences, config.interpolation_noise_quantiles)
+    inside = np.clip(differences, *limits)
     size = float(inside @ inside)
     if not size > 0.0:
         return False

@@ -25,7 +25,9 @@ from boatsim.errors import BadInput
 from boatsim.recordings.table import Recording
 from boatsim.view.formatting import format_odds
 
-# Effects that make a log on time look late
+# Effects that make a log on time look late: each shifts the motion against the commands or one
+# signal against another, or changes the response of the hull. Settings are numbers, so that this
+# list of names is no setting.
 RIVALS = (
     "position_frame_error",
     "lateral_centre_shift",

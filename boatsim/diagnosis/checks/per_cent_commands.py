@@ -25,7 +25,9 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.view.formatting import format_odds
 
-# Effects that make commands in newtons look like per cent, and others of the thrust
+# Effects that make commands in newtons look like per cent, and others of the thrust: each changes
+# the thrust for a command, as another unit does. Settings are numbers, so that this list of names
+# is no setting.
 RIVALS = ("weak_reverse", "thrust_deadband", "thrust_imbalance", "thrust_lag")
 FULL = 100.0  # [per cent]
 

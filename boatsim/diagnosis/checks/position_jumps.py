@@ -78,15 +78,17 @@ def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) ->
     """
     n = len(t)
     side = config.jump_course_rows
-    if n < 8 * side:
+    if n < config.jump_min_rows * side:
         return np.zeros(0, dtype=np.int64)
     step = np.diff(values, axis=0)
     per_row = np.maximum(np.diff(t) / float(np.median(np.diff(t))), 1.0)[:, None]
     size = np.linalg.norm(step / per_row, axis=1)
-    large = np.flatnonzero(size > config.jump_min_step * float(np.quantile(size, 0.99)))
-    if not len(large) or len(large) > n // config.jump_min_spacing + 3:
+    high = float(np.quantile(size, config.jump_step_quantile))
+    large = np.flatnonzero(size > config.jump_min_step * high)
+    most = n // config.jump_min_spacing + config.jump_spare_steps
+    if not len(large) or len(large) > most:
         return np.zeros(0, dtype=np.int64)
-    sampled = range(side, n - side - 1, max(1, n // 200))
+    sampled = range(side, n - side - 1, max(1, n // config.jump_sampled_rows))
     usual = float(np.median([_course_gap(t, values, k, side) for k in sampled]))
     found = []
     for k in large.tolist():

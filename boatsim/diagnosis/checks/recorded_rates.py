@@ -131,8 +131,9 @@ def _check_delay(
     name: str, recorded: Array, rate: Array, step: float, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
     most = round(config.rates_max_delay * froude_time_scale(vessel) / step)
-    least = max(2, round(config.rates_min_delay * froude_time_scale(vessel) / step))
-    if most <= least or len(rate) < 10 * most:
+    shortest = round(config.rates_min_delay * froude_time_scale(vessel) / step)
+    least = max(config.rates_min_delay_rows, shortest)
+    if most <= least or len(rate) < config.rates_min_durations * most:
         return []
     residuals = {}
     for lag in range(-most, most + 1):

@@ -69,19 +69,20 @@ def intervals_at_rest(
         config: Settings of the diagnosis.
     """
     seconds = priors.assumed_correlation_time(vessel, config.load)
+    least = config.checks.rest_min_window * seconds
     still = np.ones(len(recording.t), dtype=np.bool_)
     for signal in motion_signals(vessel.dof):
         if not signal.rate and signal.column in recording.signals:
             limit = config.checks.rest_speed * np.sqrt(GRAVITY / vessel.length) * seconds
             if not signal.column.endswith("_rad"):
                 limit *= vessel.length
-            still &= _is_still(recording.t, recording[signal.column], seconds, limit)
+            still &= _is_still(recording.t, recording[signal.column], seconds, limit, least)
     for name in vessel.measured:
         if name.endswith(ELEVATION) and name in recording.signals:
             wave = recording[name]
             limit = config.checks.rest_wave * float(np.nanmax(wave) - np.nanmin(wave))
             if limit > 0.0:
-                still &= _is_still(recording.t, wave, seconds, limit)
+                still &= _is_still(recording.t, wave, seconds, limit, least)
     changes = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(int)))
     found = []
     for a, b in changes.reshape(-1, 2).tolist():
@@ -89,13 +90,16 @@ def intervals_at_rest(
     return found
 
 
-def _is_still(t: Array, y: Array, seconds: float, limit: float) -> NDArray[np.bool_]:
-    """Rows (N,) in a window of some seconds over which a coordinate stays within a limit."""
+def _is_still(t: Array, y: Array, seconds: float, limit: float, least: float) -> NDArray[np.bool_]:
+    """Rows (N,) in a window of some seconds over which a coordinate stays within a limit.
+
+    The window at the end has at least `least` seconds.
+    """
     still = np.zeros(len(t), dtype=np.bool_)
     known = np.flatnonzero(np.isfinite(y))
     ends = np.searchsorted(t[known], t[known] + seconds, side="right")
     for i, end in enumerate(ends.tolist()):
-        if end == len(known) and t[known[-1]] - t[known[i]] < 0.9 * seconds:
+        if end == len(known) and t[known[-1]] - t[known[i]] < least:
             break
         window = y[known[i:end]]
         if float(window.max() - window.min()) < limit:

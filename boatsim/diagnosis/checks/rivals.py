@@ -58,7 +58,8 @@ class FaultComparison:
 
     def program_with_rivals(self, names: Collection[str]) -> Program:
         """Return the program of the vessel with the effects that may look like a fault."""
-        return program_with_candidates(self.problem.program.vessel, names)
+        vessel = self.problem.program.vessel
+        return program_with_candidates(vessel, names, self.problem.config)
 
     @property
     def required_gain(self) -> float:

@@ -25,7 +25,6 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.schema import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
 
-COEFFICIENT_STEP = 0.1  # [sd] of a coefficient, for numerical derivatives
 FORCE_UNITS = {axis: "N m" if name.endswith("Nm") else "N" for axis, name in COMPONENTS.items()}
 
 
@@ -135,7 +134,7 @@ def _missing_in_nominal(
     for j, parameter in enumerate(fit.free):
         part = running_average(parts[j], rows)
         mean += (fit.theta[j] - 1.0) * part
-        step = COEFFICIENT_STEP * parameter.sd
+        step = problem.config.locate.coefficient_step * parameter.sd
         theta = fit.theta.copy()
         theta[j] += step
         changed = _mean_average(problem, fit, theta, mapped, levels)

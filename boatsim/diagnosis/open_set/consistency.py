@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.fit import jacobian
 from boatsim.diagnosis.locate.residual_structure import find_structure
@@ -23,10 +24,6 @@ from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.open_set.effect_axes import effect_axes
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
 from boatsim.physics.base import Array, Effect
-
-# prior sd of a factor, so that a part without information does not make the equations singular
-FACTOR_SD = 100.0
-UNDETERMINED = 1e6  # sd of a factor that the data do not determine
 
 
 @dataclass(frozen=True)
@@ -137,8 +134,9 @@ def effect_consistency(
     """
     if not best.effects:
         return {}
+    config = problem.config.decide
     fitted = _linearised(problem, best)
-    parts = _parts_in_time(problem, problem.config.decide.time_parts)
+    parts = _parts_in_time(problem, config.time_parts)
     ranges = list(_ranges(problem, best))
     unseen_problem = problem.with_recordings(held_out)
     unseen = _linearised(unseen_problem, best) if held_out else None
@@ -147,22 +145,23 @@ def effect_consistency(
         size = _change_by_factor(best, problem.candidates[name])
         direction = _direction(best, fitted.jacobian, name, size)
         nuisance = _nuisance(best, fitted.jacobian, name, size)
-        times = _factors(fitted.whitened, direction, nuisance, parts)
-        runs = _factors(fitted.whitened, direction, nuisance, _recordings(problem))
+        times = _factors(fitted.whitened, direction, nuisance, parts, config)
+        runs = _factors(fitted.whitened, direction, nuisance, _recordings(problem), config)
         worst, quantity = Variation(0.0, 0.0, 0), ""
         for words, groups in ranges:
-            variation = _variation(*_factors(fitted.whitened, direction, nuisance, groups))
+            factors = _factors(fitted.whitened, direction, nuisance, groups, config)
+            variation = _variation(*factors, config)
             if variation.ratio > worst.ratio or not quantity:
                 worst, quantity = variation, words
-        unseen_factor, unseen_gain = Factor(0.0, UNDETERMINED), 0.0
+        unseen_factor, unseen_gain = Factor(0.0, config.unknown_factor_sd), 0.0
         if unseen is not None:
-            unseen_factor = _held_out_factor(best, fitted, unseen, name, size)
+            unseen_factor = _held_out_factor(best, fitted, unseen, name, size, config)
             unseen_gain = _gain(unseen_problem, best, without)
         axes = effect_axes(problem, best, name)
         found[name] = Consistency(
             tuple(map(Factor, runs[0].tolist(), np.sqrt(np.diag(runs[1])).tolist())),
             unseen_factor,
-            _variation(*times),
+            _variation(*times, config),
             worst,
             quantity,
             _parts_that_gain(problem, best, without, parts),
@@ -170,7 +169,7 @@ def effect_consistency(
             axes,
             find_structure(problem, without, without.levels).gain_along(axes),
             _prior_distance(problem, best, name),
-            _at_bound(best, name),
+            _at_bound(best, name, problem.config.answer.at_bound),
         )
     return found
 
@@ -225,7 +224,11 @@ def _nuisance(fit: Fit, J: Array, name: str, size: Array) -> Array:
 
 
 def _factors(
-    white: Array, direction: Array, nuisance: Array, groups: NDArray[np.int_]
+    white: Array,
+    direction: Array,
+    nuisance: Array,
+    groups: NDArray[np.int_],
+    config: DecideConfig,
 ) -> tuple[Array, Array]:
     """Return the factor of an effect on each group of rows, and the covariance of the factors.
 
@@ -236,6 +239,7 @@ def _factors(
         direction: (rows,) their derivative by a factor of the effect.
         nuisance: (rows, N) their derivatives by everything else, in prior sds.
         groups: (rows,) number of the group of each row; -1 for none.
+        config: Prior sd of a factor.
     """
     count = int(groups.max()) + 1
     separate = np.zeros((len(white), count))
@@ -243,7 +247,8 @@ def _factors(
     separate[used, groups[used]] = direction[used]
     columns = np.hstack([nuisance, separate])
     information = columns.T @ columns
-    prior = np.concatenate([np.ones(nuisance.shape[1]), np.full(count, FACTOR_SD**-2)])
+    precision = config.prior_factor_sd**-2
+    prior = np.concatenate([np.ones(nuisance.shape[1]), np.full(count, precision)])
     information[np.diag_indices(len(prior))] += prior
     # the fit is a maximum: the gradient by the common parameters is zero with their prior
     score = np.concatenate([np.zeros(nuisance.shape[1]), separate.T @ white])
@@ -251,14 +256,15 @@ def _factors(
     return 1.0 - covariance @ score, covariance[:, -count:]
 
 
-def _variation(factors: Array, covariance: Array) -> Variation:
+def _variation(factors: Array, covariance: Array, config: DecideConfig) -> Variation:
     """Return the variation between factors (K,) beyond their covariance (K, K).
 
     The excess is the moment estimate of R. DerSimonian and N. Laird, Meta-analysis in clinical
     trials, Controlled Clinical Trials 7, 1986.
     """
     variance = np.diag(covariance)
-    known = np.flatnonzero(variance < 1.0)  # other parts do not determine the factor
+    # other parts do not determine the factor
+    known = np.flatnonzero(variance < config.comparable_factor_sd**2)
     if len(known) < 2:
         return Variation(0.0, 0.0, 0)
     values = factors[known]
@@ -275,17 +281,22 @@ def _variation(factors: Array, covariance: Array) -> Variation:
 
 
 def _held_out_factor(
-    best: Fit, fitted: _Linearised, unseen: _Linearised, name: str, size: Array
+    best: Fit,
+    fitted: _Linearised,
+    unseen: _Linearised,
+    name: str,
+    size: Array,
+    config: DecideConfig,
 ) -> Factor:
     """Return the factor of an effect on held-out recordings, given the fit to the others."""
     direction = _direction(best, unseen.jacobian, name, size)
     columns = np.hstack([unseen.jacobian, direction[:, None]])
     if not np.isfinite(columns).all() or not np.isfinite(unseen.whitened).all():
-        return Factor(0.0, UNDETERMINED)
+        return Factor(0.0, config.unknown_factor_sd)
     J = fitted.jacobian
     information = columns.T @ columns
     information[:-1, :-1] += np.eye(J.shape[1]) + J.T @ J  # of the fit to the other recordings
-    information[-1, -1] += FACTOR_SD**-2
+    information[-1, -1] += config.prior_factor_sd**-2
     covariance = np.linalg.inv(information)[-1]
     score = columns.T @ unseen.whitened
     return Factor(float(1.0 - covariance @ score), float(np.sqrt(covariance[-1])))
@@ -387,11 +398,17 @@ def _prior_distance(problem: Problem, fit: Fit, name: str) -> float:
     return float(np.max(np.abs(size))) if len(size) else 0.0
 
 
-def _at_bound(fit: Fit, name: str) -> bool:
-    """Whether a parameter of an effect is at a bound of its range other than zero effect."""
+def _at_bound(fit: Fit, name: str, tolerance: float) -> bool:
+    """Whether a parameter of an effect is at a bound of its range other than zero effect.
+
+    Args:
+        fit: Fit with the effect.
+        name: Name of the effect.
+        tolerance: Relative distance from a bound that counts as at the bound.
+    """
     for i in _own(fit, name):
         free = fit.free[i]
         for end in (free.low, free.high):
-            if end != free.mean and abs(fit.theta[i] - end) <= 1e-3 * abs(end):
+            if end != free.mean and abs(fit.theta[i] - end) <= tolerance * abs(end):
                 return True
     return False

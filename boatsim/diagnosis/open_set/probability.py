@@ -6,19 +6,12 @@ of simulated logs with known causes, among them causes outside the candidates
 (`python -m validation.calibration`).
 """
 
-from math import exp, hypot, log, log1p
+from math import exp, hypot, inf, log, log1p
 
 from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
-
-# bounds of features, so that no single sign decides: beyond them the campaign has few examples
-MOST_SIGNIFICANT = 10.0
-MOST_DEVIATION = 8.0
-MOST_EXCESS = 2.0
-LEAST_GAIN = 0.1  # [nats] on held-out recordings; less is no evidence
-MOST_LOG_ODDS = 30.0  # beyond it the probability is 0 or 1 in every printed digit
 
 
 def logistic_features(
@@ -31,6 +24,7 @@ def logistic_features(
     """Return the features of a logistic regression: is an identified effect a true cause?
 
     Their weighted sum is the log of the odds that the effect, or one of its look-alikes, is true.
+    They are limited, so that no single sign decides.
 
     Args:
         effect: The effect with its evidence and its look-alikes.
@@ -43,25 +37,30 @@ def logistic_features(
         Features by the name of their weight in `DecideConfig`.
     """
     held_out = consistency.held_out
-    off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.law_error)
-    alternative = consistency.alternative_gain / max(effect.gain, 1.0)
-    structure = log_signs.structure_gain / max(log_signs.effects_gain, 1.0)
-    held_out_gain = log(max(consistency.held_out_gain, LEAST_GAIN))
+    least = config.least_reference_gain
+    off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.size_tolerance)
+    times, ranges = consistency.between_times.excess, consistency.between_ranges.excess
+    alternative = consistency.alternative_gain / max(effect.gain, least)
+    structure = log_signs.structure_gain / max(log_signs.effects_gain, least)
+    held_out_gain = log(max(consistency.held_out_gain, config.least_held_out_gain))
+    shift, most_shift = log_signs.coefficient_shift, config.largest_coefficient_shift
     return {
         "held_out_gain": held_out_gain,
-        "held_out_significance": _within(held_out.significance, -3.0, MOST_SIGNIFICANT),
-        "held_out_deviation": _within(off, 0.0, MOST_DEVIATION),
-        "times_apart": _within(consistency.between_times.excess, 0.0, MOST_EXCESS),
-        "ranges_apart": _within(consistency.between_ranges.excess, 0.0, MOST_EXCESS),
-        "unexplained": _within(log_signs.unexplained, 0.0, 4.0),
-        "structure": _within(structure, 0.0, 1.0),
-        "alternative": _within(alternative, 0.0, 2.0),
+        "held_out_significance": _within(
+            held_out.significance, *config.held_out_significance_range
+        ),
+        "held_out_deviation": _within(off, 0.0, config.largest_held_out_deviation),
+        "times_apart": _within(times, 0.0, config.largest_variation),
+        "ranges_apart": _within(ranges, 0.0, config.largest_variation),
+        "unexplained": _within(log_signs.unexplained, 0.0, config.largest_unexplained),
+        "structure": _within(structure, 0.0, config.largest_structure),
+        "alternative": _within(alternative, 0.0, config.largest_alternative),
         "prior_distance": log1p(consistency.prior_distance),
-        "at_bound": float(exceeds_range(consistency, config)),
+        "exceeds_range": float(exceeds_range(consistency, config)),
         "stochastic": float(stochastic),
         "stochastic_gain": float(stochastic) * held_out_gain,
         "look_alikes": float(len(effect.tied_with)),
-        "coefficient_shift": _within(log_signs.coefficient_shift, 0.0, 4.0),
+        "coefficient_shift": _within(shift, 0.0, most_shift),
         "effects": log(max(log_signs.effects, 1)),
     }
 
@@ -78,7 +77,8 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
     odds = config.intercept
     for name, value in found.items():
         odds += getattr(config, name) * value
-    return 1.0 / (1.0 + exp(-_within(odds, -MOST_LOG_ODDS, MOST_LOG_ODDS)))
+    most = config.largest_log_odds
+    return 1.0 / (1.0 + exp(-_within(odds, -most, most)))
 
 
 def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
@@ -92,7 +92,7 @@ def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
         config: Settings of the decision.
     """
     sizes = [factor.value for factor in consistency.recordings]
-    return consistency.at_bound and max(sizes, default=2.0) > 1.0 + config.law_error
+    return consistency.at_bound and max(sizes, default=inf) > 1.0 + config.size_tolerance
 
 
 def _within(value: float, low: float, high: float) -> float:

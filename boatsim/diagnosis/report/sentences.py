@@ -399,7 +399,8 @@ def held_out_improvement_sentence(f: Findings) -> str:
             before, after = format_in_one_unit([rms["recalibrated"], rms["patched"]], unit)
             gain = rms["recalibrated"] / max(rms["patched"], 1e-300)
             errors.append(f"{before} in {words}")
-            compared.append(f"{after} in {words} instead of {before} ({_improvement_factor(gain)})")
+            factor = _improvement_factor(gain, f.setting("answer.unchanged_share"))
+            compared.append(f"{after} in {words} instead of {before} ({factor})")
             gains.append(gain)
     if not errors and f.answer["unknown"].get("diverges"):
         return "The result could not be validated: free runs of the vessel diverge."
@@ -423,8 +424,8 @@ def held_out_improvement_sentence(f: Findings) -> str:
     )
 
 
-def _improvement_factor(gain: float) -> str:
-    if 0.95 < gain < 1.05:
+def _improvement_factor(gain: float, unchanged: float) -> str:
+    if 1.0 - unchanged < gain < 1.0 + unchanged:
         return "unchanged"
     if gain > 1.0:
         return f"{format_number(gain, 2)} times smaller"

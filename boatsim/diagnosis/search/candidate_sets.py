@@ -30,8 +30,6 @@ from boatsim.physics.base import RandomForce
 from boatsim.physics.groups import without_group
 
 SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
-CALM_STEPS = 4  # Gauss-Newton steps of a refit with the assumed levels
-START_STEPS = 2  # Gauss-Newton steps from each starting point of a candidate
 
 Set = frozenset[str]  # names of the effects of a fit
 Recordings = Sequence[MappedRecording]
@@ -170,7 +168,8 @@ class CandidateSets:
         """
         force = np.minimum(found.levels.force, self.problem.ambient.force)
         start = replace(found, levels=replace(found.levels, force=force), evidence=-np.inf)
-        return gauss_newton(self.problem, start, CALM_STEPS, self.config.fit.refit_gain)
+        steps, enough = self.config.select.calm_steps, self.config.fit.refit_gain
+        return gauss_newton(self.problem, start, steps, enough)
 
     def cache_better_fit(self, found: Fit) -> Fit:
         """Store a converged fit if it is better than the cached one of its set; return the better.
@@ -389,10 +388,10 @@ class CandidateSets:
         single = len(starting_points(problem, effect)) == 1 or type(effect).random
         if single or unexplained_evidence(problem, found) < self.config.select.unknown_gain:
             return found
-        enough = self.config.fit.refit_gain
+        steps, enough = self.config.select.start_steps, self.config.fit.refit_gain
         others = []
         for start in starting_fits(problem, best, effect):
-            others.append(gauss_newton(problem, start, START_STEPS, enough))
+            others.append(gauss_newton(problem, start, steps, enough))
         other = max(others, key=lambda f: f.evidence)
         return max(found, fit(problem, other), key=lambda f: f.evidence)
 

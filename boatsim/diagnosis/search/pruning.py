@@ -22,8 +22,6 @@ from boatsim.diagnosis.search.forward_selection import select_forward
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.groups import without_group
 
-MOST_TIED = 3  # look-alikes that are reported of an effect
-
 
 @dataclass(frozen=True)
 class IdentifiedEffect:
@@ -306,7 +304,7 @@ def compare_rivals(
         best: Fit with the effect.
         without: Fit without the effect.
         rivals: Fits with other candidates in its place.
-        config: Distance within which rivals are look-alikes.
+        config: Distance within which rivals are look-alikes, and their largest number.
     """
     gain = best.evidence - without.evidence
     gains = log_evidence_gains(rivals, without)
@@ -322,6 +320,6 @@ def compare_rivals(
         gain,
         combined_gain([gain, *gains.values()]),
         probability,
-        tuple(tied[:MOST_TIED]),
+        tuple(tied[: config.most_look_alikes]),
         {n: rivals[n] for n in order},
     )

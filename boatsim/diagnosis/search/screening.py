@@ -10,9 +10,6 @@ import numpy as np
 from boatsim.diagnosis.command_range import largest_command
 from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.fit import (
-    DAMPING_GROWTH,
-    FIRST_DAMPING,
-    LEAST_DAMPING,
     ParameterSpace,
     agrees_with_prediction,
     gauss_newton,
@@ -392,7 +389,8 @@ class _ScreeningSearch:
                 gain = better.score - at.score
                 ends = agrees_with_prediction(problem, gain, predicted)
                 return better, A, damping, ends or gain < problem.config.fit.step_gain
-            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
+            least, growth = problem.config.fit.least_damping, problem.config.fit.damping_growth
+            damping = max(damping, least) * growth
         return at, A, damping, True
 
 
@@ -407,7 +405,7 @@ def _gauss_newton_steps(
     point = search.first_point()
     if not np.isfinite(point.score):
         return start, -np.inf
-    damping, A = FIRST_DAMPING, np.zeros((len(start.free), len(start.free)))
+    damping, A = problem.config.fit.first_damping, np.zeros((len(start.free), len(start.free)))
     for _ in range(rounds):
         point, A, damping, ends = search.step(point, damping)
         if ends:

@@ -25,9 +25,9 @@ Recordings = Sequence[MappedRecording]
 PLANAR_SPEEDS = (SPEEDS[0], SPEEDS[1], SPEEDS[5])  # surge, sway and yaw
 THRUST_ROLES = ("thrust", "shaft")  # roles of actuators that drive the hull
 BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
-RIPPLE_STEP = 0.15  # relative step between the wavelengths of the grammar
-OSCILLATION_STEP = 0.5  # step between its periods, relative to a period per recording
-QUARTER = 0.25  # of a period or wavelength: a cosine and a sine are tested
+# Share of a period or wavelength by which a sine is shifted against a cosine. It is no setting: the
+# sum of both has any phase.
+QUARTER = 0.25
 
 
 @dataclass(frozen=True)
@@ -303,9 +303,9 @@ def term_variants(
         for factor in (2.0**step, 2.0**-step):
             found.append(replace(term, end=term.begin + span * factor))
     if term.acts == "swinging":
-        found += _moved_oscillation(term, step, whole)
+        found += _moved_oscillation(term, step, whole, config.oscillation_step)
     if set(term.of) & set(RIPPLES):
-        found += _moved_ripple(term, step)
+        found += _moved_ripple(term, step, config.wavelength_step)
     for factor in (1.0 + step, 1.0 / (1.0 + step)):
         if set(term.of) & set(BEYOND):
             found.append(replace(term, beyond=term.beyond * factor))
@@ -327,21 +327,36 @@ def _moved_interval(term: SymbolicTerm, seconds: float) -> list[SymbolicTerm]:
     return found
 
 
-def _moved_oscillation(term: SymbolicTerm, step: float, whole: float) -> list[SymbolicTerm]:
-    """Return the term with period and phase changed in all combinations."""
+def _moved_oscillation(
+    term: SymbolicTerm, step: float, whole: float, periods: float
+) -> list[SymbolicTerm]:
+    """Return the term with period and phase changed in all combinations.
+
+    Args:
+        term: A term that oscillates.
+        step: Size of the change, relative to the step of the grammar.
+        whole: Duration of the longest recording in which it acts [s].
+        periods: Step of the grammar, in periods in this duration.
+    """
     found, period = [], term.end - term.begin
-    ratio = 1.0 + step * OSCILLATION_STEP * period / whole
+    ratio = 1.0 + step * periods * period / whole
     for p in (period * ratio, period, period / ratio):
-        for phase in (-step / 4, 0.0, step / 4):
+        for phase in (-QUARTER * step, 0.0, QUARTER * step):
             if p != period or phase:
                 begin = (term.begin / period + phase) * p
                 found.append(replace(term, begin=begin, end=begin + p))
     return found
 
 
-def _moved_ripple(term: SymbolicTerm, step: float) -> list[SymbolicTerm]:
-    """Return the term with wavelength and crest changed in all combinations."""
-    found, ratio = [], 1.0 + RIPPLE_STEP * step
+def _moved_ripple(term: SymbolicTerm, step: float, relative: float) -> list[SymbolicTerm]:
+    """Return the term with wavelength and crest changed in all combinations.
+
+    Args:
+        term: A term with a pattern in space.
+        step: Size of the change, relative to the step of the grammar.
+        relative: Step of the grammar as a share of the wavelength.
+    """
+    found, ratio = [], 1.0 + relative * step
     for factor in (ratio, 1.0, 1.0 / ratio):
         for shift in (-QUARTER * step, 0.0, QUARTER * step):
             if factor != 1.0 or shift:

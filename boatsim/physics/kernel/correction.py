@@ -11,11 +11,15 @@ from boatsim.physics.signals import Array
 
 # [sd] A measurement with a larger prediction error is an outlier. Its weight falls with the error
 # and its penalty grows with the logarithm of the error, as of a Cauchy distribution. Both are
-# continuous, so that a fit does not get stuck.
+# continuous, so that a fit does not get stuck. Of normally distributed errors one in 1.7 million is
+# larger than 5 sd.
 GATE = 5.0
 # Consecutive outliers of one channel. A further one means that the filter has diverged and must
 # follow the measurements.
 IN_A_ROW = 2
+# Both influence a diagnosis but are no settings of it (`DiagnosisConfig`): they are compiled into
+# the update, which all vessels, programs and callers share, and the thresholds of the diagnosis
+# were chosen with them.
 
 
 @lean

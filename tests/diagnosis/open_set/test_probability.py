@@ -1,0 +1,69 @@
+"""The probability of a true cause is a logistic regression of limited features."""
+
+from dataclasses import fields, replace
+from math import exp, log
+
+import pytest
+
+from boatsim.diagnosis.config import DEFAULT, DecideConfig
+from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
+from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.open_set.probability import (
+    exceeds_range,
+    logistic_features,
+    probability_of_true_cause,
+)
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
+
+CONFIG = DEFAULT.decide
+EFFECT = IdentifiedEffect("current", 10.0, 10.0, 1.0, ("wind",), {})
+EXTREME = Consistency(
+    recordings=(Factor(1.2, 0.1),),
+    held_out=Factor(90.0, 1.0),
+    between_times=Variation(50.0, 1.0, 1),
+    between_ranges=Variation(50.0, 1.0, 1),
+    quantity="surge rate",
+    parts_that_gain=1.0,
+    held_out_gain=-5.0,
+    axes=("surge",),
+    alternative_gain=1e3,
+    prior_distance=0.0,
+    at_bound=True,
+)
+LOG = LogSigns(50.0, 1.0, 50.0, 1e3, 10.0, 1)
+
+
+def features(config: DecideConfig = CONFIG) -> dict[str, float]:
+    return logistic_features(EFFECT, False, EXTREME, LOG, config)
+
+
+def test_each_feature_has_a_weight_of_its_name() -> None:
+    assert set(features()) <= {field.name for field in fields(DecideConfig)}
+
+
+def test_settings_limit_the_features() -> None:
+    found = features()
+    assert found["held_out_gain"] == log(CONFIG.least_held_out_gain)
+    assert found["held_out_significance"] == CONFIG.held_out_significance_range[1]
+    assert found["held_out_deviation"] == CONFIG.largest_held_out_deviation
+    assert found["times_apart"] == found["ranges_apart"] == CONFIG.largest_variation
+    assert found["unexplained"] == CONFIG.largest_unexplained
+    assert found["structure"] == CONFIG.largest_structure
+    assert found["alternative"] == CONFIG.largest_alternative
+    assert found["coefficient_shift"] == CONFIG.largest_coefficient_shift
+    assert features(replace(CONFIG, largest_alternative=3.0))["alternative"] == 3.0
+
+
+def test_a_parameter_at_a_bound_counts_if_a_recording_requires_more() -> None:
+    assert exceeds_range(EXTREME, CONFIG)
+    assert not exceeds_range(EXTREME, replace(CONFIG, size_tolerance=0.3))
+    assert not exceeds_range(replace(EXTREME, at_bound=False), CONFIG)
+
+
+def test_the_log_of_the_odds_is_the_weighted_sum_within_its_limit() -> None:
+    found = {"stochastic": 1.0, "exceeds_range": 1.0}
+    odds = CONFIG.intercept + CONFIG.stochastic + CONFIG.exceeds_range
+    probability = probability_of_true_cause(found, CONFIG)
+    assert log(probability / (1.0 - probability)) == pytest.approx(odds)
+    narrow = replace(CONFIG, largest_log_odds=1.0)
+    assert probability_of_true_cause(found, narrow) == pytest.approx(1.0 / (1.0 + exp(1.0)))
