@@ -35,7 +35,7 @@ def hull_xml(hull: HullParticulars, name: str, comment: str, fittings: Iterable[
         fittings: Elements of outboards, rudders and the like.
     """
     lines = [
-        f"<mujoco model="{html.escape(name)}">",
+        f'<mujoco model="{html.escape(name)}">',
         f"  <!-- {comment} -->",
         "  <custom>",
         f'    <numeric name="drawn_for" data="{hull.length:g} {hull.beam:g} {hull.draught:.4g}"/> '
