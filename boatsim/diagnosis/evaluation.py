@@ -3,19 +3,16 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from boatsim.diagnosis.answer.schema import MeanEntry
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
+from boatsim.diagnosis.model_names import ALONE, MODELS
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import MeanEntry
 from boatsim.diagnosis.search.ranking import Ranking
-
-# models that are compared, and the nominal one refitted to a part of the data alone
-MODELS = ("nominal", "recalibrated", "patched")
-ALONE = "alone"
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,15 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from boatsim.diagnosis import loading
+from boatsim.diagnosis.answer.compose import compose_answer
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.incomplete import (
+    NOT_SELECTED_AGAIN,
+    TERMS_NOT_SOUGHT,
+    TIME_NOT_CHOSEN,
+)
+from boatsim.diagnosis.answer.results import collect_findings
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
@@ -35,15 +44,6 @@ from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
 from boatsim.diagnosis.recalibration import decide_recalibration
-from boatsim.diagnosis.report.answer import compose_answer
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.incomplete import (
-    NOT_SELECTED_AGAIN,
-    TERMS_NOT_SOUGHT,
-    TIME_NOT_CHOSEN,
-)
-from boatsim.diagnosis.report.results import collect_findings
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import (
     Baseline,

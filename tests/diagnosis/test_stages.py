@@ -8,11 +8,11 @@ import pytest
 from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.answer.compose import compose_answer
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
-from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array

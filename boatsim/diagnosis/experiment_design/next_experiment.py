@@ -16,6 +16,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from boatsim.diagnosis.answer.schema import NextEntry
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.config import DiagnosisConfig
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
@@ -26,7 +27,6 @@ from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
 )
 from boatsim.diagnosis.filter import FilterPass, MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem, froude_scale
-from boatsim.diagnosis.report.schema import NextEntry
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.files import toml_value

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from boatsim.diagnosis.answer.schema import MeanEntry
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.locate.smoothing import LatentForce, latent_force, variance_of_mean
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import MeanEntry
 from boatsim.physics.base import Array
 
 

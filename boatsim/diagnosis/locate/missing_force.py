@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.answer.schema import StrengthEntry
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.smoothing import (
@@ -22,7 +23,6 @@ from boatsim.diagnosis.locate.smoothing import (
 )
 from boatsim.diagnosis.noise_levels import fit_latent_force_spectrum
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
 
 COEFFICIENT_STEP = 0.1  # [sd] of a coefficient, for numerical derivatives

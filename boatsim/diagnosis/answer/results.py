@@ -4,6 +4,10 @@ from os.path import commonprefix
 
 import numpy as np
 
+from boatsim.diagnosis.answer import before_after
+from boatsim.diagnosis.answer.compose import effect_meanings
+from boatsim.diagnosis.answer.findings import Findings, MissingForceCurve
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.candidates import FURTHER, REORDERED, name_without_prefixes
 from boatsim.diagnosis.evaluation import Evaluation
 from boatsim.diagnosis.experiment_design import next_experiment
@@ -12,10 +16,6 @@ from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question
-from boatsim.diagnosis.report import before_after
-from boatsim.diagnosis.report.answer import effect_meanings
-from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel

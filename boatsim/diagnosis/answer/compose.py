@@ -5,28 +5,15 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from boatsim.control.base import wrap
-from boatsim.diagnosis.candidates import name_without_prefixes
-from boatsim.diagnosis.checks.entry import column_sources, finding_entry
-from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
-from boatsim.diagnosis.config import AnswerConfig, settings_by_name
-from boatsim.diagnosis.evaluation import Evaluation
-from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.loading import LoadedRecordings
-from boatsim.diagnosis.locate import missing_force as locate
-from boatsim.diagnosis.locate.regions import find_missing_force_conditions
-from boatsim.diagnosis.locate.residual_structure import Structure
-from boatsim.diagnosis.open_set.decision import Decision
-from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.question import Question
-from boatsim.diagnosis.recalibration import Recalibration
-from boatsim.diagnosis.report.assumptions import assumptions_entry, excluded_candidates
-from boatsim.diagnosis.report.confirmation import effect_error_entry, reason_unconfirmed
-from boatsim.diagnosis.report.described_terms import described_entries
-from boatsim.diagnosis.report.effect_groups import classify_effects
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.incomplete import incomplete_sentence
-from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
-from boatsim.diagnosis.report.schema import (
+from boatsim.diagnosis.answer.assumptions import assumptions_entry, excluded_candidates
+from boatsim.diagnosis.answer.confirmation import effect_error_entry, reason_unconfirmed
+from boatsim.diagnosis.answer.described_terms import described_entries
+from boatsim.diagnosis.answer.effect_groups import classify_effects
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.incomplete import incomplete_sentence
+from boatsim.diagnosis.answer.log_entry import column_sources, finding_entry
+from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
+from boatsim.diagnosis.answer.schema import (
     Acting,
     Answer,
     CandidateEntry,
@@ -41,8 +28,21 @@ from boatsim.diagnosis.report.schema import (
     UnknownEntry,
     WhereEntry,
 )
-from boatsim.diagnosis.report.sentences import verdict_sentences
-from boatsim.diagnosis.report.signs import cause_statistics_entry, reason_for_doubt
+from boatsim.diagnosis.answer.signs import cause_statistics_entry, reason_for_doubt
+from boatsim.diagnosis.answer.verdict import verdict_sentences
+from boatsim.diagnosis.candidates import name_without_prefixes
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
+from boatsim.diagnosis.config import AnswerConfig, settings_by_name
+from boatsim.diagnosis.evaluation import Evaluation
+from boatsim.diagnosis.experiment_design import next_experiment
+from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.locate import missing_force as locate
+from boatsim.diagnosis.locate.regions import find_missing_force_conditions
+from boatsim.diagnosis.locate.residual_structure import Structure
+from boatsim.diagnosis.open_set.decision import Decision
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.question import Question
+from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import ChannelEffect, Effect
