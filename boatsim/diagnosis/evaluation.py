@@ -3,12 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from boatsim.diagnosis.answer.schema import MeanEntry
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.loading import recording_order
-from boatsim.diagnosis.locate.mean_force import mean_residual_force
+from boatsim.diagnosis.locate.mean_force import MeanForce, mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
 from boatsim.diagnosis.model_names import ALONE, MODELS
 from boatsim.diagnosis.problem import Fit, Problem
@@ -44,7 +43,7 @@ class Evaluation:
     uninformative: tuple[str, ...]
     missing: tuple[MissingForce, ...]  # force missing on the recalibrated vessel, by recording
     remaining: tuple[MissingForce, ...]  # force missing on the patched vessel
-    mean_force: Mapping[str, MeanEntry]  # mean force that stays in the patched vessel, by axis
+    mean_force: Mapping[str, MeanForce]  # mean force that stays in the patched vessel, by axis
 
 
 def compared_fits(ranking: Ranking) -> dict[str, Fit]:

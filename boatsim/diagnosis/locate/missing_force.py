@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.answer.schema import StrengthEntry
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.smoothing import (
@@ -40,6 +39,15 @@ class MissingForce:
     t: Array  # (N,) s
     mean: Array  # (N, axes) [N, N m] body axes
     sd: Array  # (N, axes)
+
+
+@dataclass(frozen=True)
+class ForceStrength:
+    """Rms of a missing force along one axis over all recordings, and of its deviation."""
+
+    rms: float  # [N, N m]
+    sd: float  # [N, N m]
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -187,7 +195,7 @@ def _merged_intervals(
     return merged
 
 
-def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
+def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, ForceStrength]:
     """Return the rms over all recordings of the missing force of each axis, and of its deviation.
 
     Args:
@@ -196,11 +204,11 @@ def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[
     """
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])
-    entries: dict[str, StrengthEntry] = {}
+    strengths: dict[str, ForceStrength] = {}
     for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
-        entries[axis] = {
-            "rms": float(np.sqrt(np.mean(mean[:, i] ** 2))),
-            "sd": float(np.sqrt(np.mean(sd[:, i] ** 2))),
-            "unit": FORCE_UNITS[axis],
-        }
-    return entries
+        strengths[axis] = ForceStrength(
+            rms=float(np.sqrt(np.mean(mean[:, i] ** 2))),
+            sd=float(np.sqrt(np.mean(sd[:, i] ** 2))),
+            unit=FORCE_UNITS[axis],
+        )
+    return strengths
