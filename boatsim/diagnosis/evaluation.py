@@ -77,14 +77,14 @@ def compare_models(
     runs = free_runs(problem, fits, held_out, horizon)
     parts = _errors_by_part(problem, fits, everything, horizon) if ranking.adds_effects else ()
     return Evaluation(
-        horizon,
-        tuple(runs),
-        rms_errors(runs),
-        parts,
-        _uninformative(parts, problem.config.validate.alone_share),
-        tuple(missing),
-        tuple(remaining),
-        mean_residual_force(problem, ranking.best, everything),
+        horizon=horizon,
+        free_runs=tuple(runs),
+        errors=rms_errors(runs),
+        parts=parts,
+        uninformative=_uninformative(parts, problem.config.validate.alone_share),
+        missing=tuple(missing),
+        remaining=tuple(remaining),
+        mean_force=mean_residual_force(problem, ranking.best, everything),
     )
 
 

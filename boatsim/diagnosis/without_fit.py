@@ -76,7 +76,16 @@ def results_without_fit(
         divergences=places,
     )
     some = tuple(force for force in forces if len(force.t))
-    evaluation = Evaluation(horizon, runs, rms_errors(runs), (), (), some, some, {})
+    evaluation = Evaluation(
+        horizon=horizon,
+        free_runs=runs,
+        errors=rms_errors(runs),
+        parts=(),
+        uninformative=(),
+        missing=some,
+        remaining=some,
+        mean_force={},
+    )
     return ranking, evaluation
 
 
