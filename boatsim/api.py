@@ -22,18 +22,18 @@ from boatsim.arguments import (
     type_error,
 )
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
 from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.loading import open_recording, open_recording_parts
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
-from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.notebook_views import (
     diagnosis_figure,
     diagnosis_html,
     parameter_table,
 )
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Body as Body
@@ -244,7 +244,7 @@ class Diagnosis:
         Args:
             folder: Folder of the files; it is created if needed.
         """
-        output_files.write_diagnosis(self.result, Path(checked_name("folder", folder)))
+        write_diagnosis(self.result, Path(checked_name("folder", folder)))
 
     def __repr__(self) -> str:
         """Verdict and sentence; all results would fill pages."""

@@ -54,6 +54,27 @@ BY_ANY_NAME = {
     "physics.content",
     "physics.cache",
 }  # what files name, and programs composed on the spot
+DIAGNOSIS_FOLDERS = sorted(
+    {".".join(name.split(".")[:2]) for name in OURS if re.match(r"diagnosis\.\w+\.", name)}
+)
+IMPORTERS_IN_DIAGNOSIS = {  # upper folder of the diagnosis -> what else there may import from it
+    "diagnosis.answer": {
+        "diagnosis.pipeline",
+        "diagnosis.log_check",
+        "diagnosis.report",
+        "diagnosis.output",
+    },
+    "diagnosis.report": {"diagnosis.output"},
+    "diagnosis.output": set[str](),
+}
+READ_BY_REPORT = {  # what a report imports from the diagnosis: the answer, its curves, and words
+    f"boatsim.diagnosis.{name}"
+    for name in (
+        *("answer.schema", "answer.findings", "answer.families", "answer.verdict"),
+        *("answer.confirmation", "answer.described_terms", "answer.incomplete", "answer.log_entry"),
+        *("model_names", "description.FittedTerm", "free_runs.FreeRun", "report"),
+    )
+}
 CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))
 
 
@@ -80,6 +101,52 @@ def test_no_imports_form_a_ring() -> None:
         {name: modules_of_boatsim(path) - {name} for name, path in OURS.items()}
     )
     assert set(order.static_order()) >= set(OURS)  # raises CycleError, which names the ring
+
+
+def folder_in_diagnosis(name: str) -> str:
+    """The folder of a module of the diagnosis, or the module itself if it lies in none."""
+    return ".".join(name.split(".")[:2])
+
+
+def test_the_folders_of_a_diagnosis_form_no_ring() -> None:
+    imported: dict[str, set[str]] = {folder: set() for folder in DIAGNOSIS_FOLDERS}
+    for name, path in OURS.items():
+        if (folder := folder_in_diagnosis(name)) in imported:
+            others = {folder_in_diagnosis(other) for other in modules_of_boatsim(path)}
+            imported[folder] |= (others & imported.keys()) - {folder}
+    order = TopologicalSorter(imported)
+    assert {*order.static_order()} == {*DIAGNOSIS_FOLDERS}  # raises CycleError
+
+
+@pytest.mark.parametrize("folder", IMPORTERS_IN_DIAGNOSIS)
+def test_only_the_last_stages_of_a_diagnosis_know_its_answer_and_its_report(folder: str) -> None:
+    importers = set()
+    for name, path in OURS.items():
+        imported = {folder_in_diagnosis(other) for other in modules_of_boatsim(path)}
+        if name.startswith("diagnosis.") and folder in imported:
+            importers.add(folder_in_diagnosis(name))
+    assert importers - {folder} <= IMPORTERS_IN_DIAGNOSIS[folder]
+
+
+@pytest.mark.parametrize("name", [name for name in OURS if name.startswith("diagnosis.report.")])
+def test_a_report_reads_the_answer_and_its_curves_only(name: str) -> None:
+    imported = {full for full in imported_modules(OURS[name]) if "boatsim.diagnosis" in full}
+    assert not [full for full in imported if not readable_by_report(full)]
+
+
+def readable_by_report(full: str) -> bool:
+    """Whether a name, or the module or folder that contains it, may be imported by a report."""
+    parts = full.split(".")
+    return any(".".join(parts[:n]) in READ_BY_REPORT for n in range(1, len(parts) + 1))
+
+
+def test_a_report_may_not_import_a_fit_or_a_stage() -> None:
+    assert readable_by_report("boatsim.diagnosis.free_runs.FreeRun")
+    for name in (
+        *("fit.converge", "search.ranking", "filter", "locate.regions", "pipeline", "open_set"),
+        *("free_runs.free_runs", "evaluation.Evaluation", "answer.compose.compose_answer"),
+    ):
+        assert not readable_by_report(f"boatsim.diagnosis.{name}")
 
 
 @pytest.mark.parametrize("path", CONTROLLERS, ids=lambda path: path.stem)

@@ -65,7 +65,7 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     """Diagnose one trial, replay run_3 with the patched vessel, and return the answer."""
     from boatsim.cli import diagnosis as commands
     from boatsim.diagnosis import pipeline
-    from boatsim.diagnosis.report import patched_vessel
+    from boatsim.diagnosis.output import patched_vessel
 
     found = pipeline.diagnose(
         [trial / "run_1.csv", trial / "run_2.csv"],

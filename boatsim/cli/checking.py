@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, one_line, print_error, print_lines
-from boatsim.diagnosis.checks.entry import finding_lines
+from boatsim.diagnosis.answer.log_entry import finding_lines
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import escape_for_terminal

@@ -10,12 +10,12 @@ from pydantic import Field
 from boatsim.cli.exits import Exit, print_lines, print_note
 from boatsim.cli.programs import typed_program
 from boatsim.cli.progress import report_stages
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.report.brief import summary_lines
 from boatsim.diagnosis.report.experiment_section import is_optional
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.base import Effect
 from boatsim.physics.content import content_root

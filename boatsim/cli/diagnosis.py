@@ -10,16 +10,16 @@ import numpy as np
 from boatsim.atomic_folder import atomic_folder
 from boatsim.cli.exits import print_lines, print_note, print_notes
 from boatsim.cli.progress import report_stages
+from boatsim.diagnosis.answer.compose import NEXT_SCENARIO
+from boatsim.diagnosis.answer.log_entry import finding_lines
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
-from boatsim.diagnosis.checks.entry import finding_lines
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording, open_recording_parts
 from boatsim.diagnosis.log_check import correction_hint
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import fit_noise_only, free_run_columns, replay_recording
-from boatsim.diagnosis.report.answer import NEXT_SCENARIO
-from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.errors import BadInput
 from boatsim.files import replace_file

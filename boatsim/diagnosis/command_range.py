@@ -63,3 +63,16 @@ def command_channels(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
             if isinstance(name, str) and type(owner).roles[role].unit in units:
                 channels.append(name)
     return tuple(channels)
+
+
+def manoeuvre_commands(vessel: Vessel) -> tuple[str, ...]:
+    """Return the names of the commands that a manoeuvre sets on a vessel.
+
+    A command that feeds an actuator, such as a PWM signal, replaces the actuator's own command.
+    """
+    fed = set()
+    for effect in vessel.effects:
+        for target in vessel.target_actuators(effect):
+            if vessel.command_for_actuator(effect, target):
+                fed.add(target)
+    return tuple(name for name in vessel.commands if name not in fed)

@@ -7,15 +7,11 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.loading import recording_order
-from boatsim.diagnosis.locate.mean_force import mean_residual_force
+from boatsim.diagnosis.locate.mean_force import MeanForce, mean_residual_force
 from boatsim.diagnosis.locate.missing_force import MissingForce, missing_force, residual_force
+from boatsim.diagnosis.model_names import ALONE, MODELS
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import MeanEntry
 from boatsim.diagnosis.search.ranking import Ranking
-
-# models that are compared, and the nominal one refitted to a part of the data alone
-MODELS = ("nominal", "recalibrated", "patched")
-ALONE = "alone"
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,7 @@ class Evaluation:
     uninformative: tuple[str, ...]
     missing: tuple[MissingForce, ...]  # force missing on the recalibrated vessel, by recording
     remaining: tuple[MissingForce, ...]  # force missing on the patched vessel
-    mean_force: Mapping[str, MeanEntry]  # mean force that stays in the patched vessel, by axis
+    mean_force: Mapping[str, MeanForce]  # mean force that stays in the patched vessel, by axis
 
 
 def compared_fits(ranking: Ranking) -> dict[str, Fit]:
@@ -81,14 +77,14 @@ def compare_models(
     runs = free_runs(problem, fits, held_out, horizon)
     parts = _errors_by_part(problem, fits, everything, horizon) if ranking.adds_effects else ()
     return Evaluation(
-        horizon,
-        tuple(runs),
-        rms_errors(runs),
-        parts,
-        _uninformative(parts, problem.config.validate.alone_share),
-        tuple(missing),
-        tuple(remaining),
-        mean_residual_force(problem, ranking.best, everything),
+        horizon=horizon,
+        free_runs=tuple(runs),
+        errors=rms_errors(runs),
+        parts=parts,
+        uninformative=_uninformative(parts, problem.config.validate.alone_share),
+        missing=tuple(missing),
+        remaining=tuple(remaining),
+        mean_force=mean_residual_force(problem, ranking.best, everything),
     )
 
 

@@ -670,19 +670,21 @@ def map_recording(
         if recording.orders is None:
             commands = interpolate_measured_inputs(commands, measured_input_indices(vessel))
     facts = merged_facts(vessel, recording)
+    command_times, command_values = _commands_at_own_times(recording, vessel)
     mapped = MappedRecording(
-        recording.name,
-        program,
-        np.ascontiguousarray(recording.t),
-        np.ascontiguousarray(measured),
-        tuple(families),
-        columns,
-        np.array(codes),
-        np.ascontiguousarray(commands),
-        parameter_values(program, facts),
-        scale | dict(noise_ratio or {}),
-        facts,
-        *_commands_at_own_times(recording, vessel),
+        name=recording.name,
+        program=program,
+        times=np.ascontiguousarray(recording.t),
+        measured=np.ascontiguousarray(measured),
+        families=tuple(families),
+        signals=columns,
+        codes=np.array(codes),
+        commands=np.ascontiguousarray(commands),
+        values=parameter_values(program, facts),
+        noise_scale=scale | dict(noise_ratio or {}),
+        facts=facts,
+        command_times=command_times,
+        command_values=command_values,
         input_noise=input_noise_density(vessel, recording, axes, config.load),
         groups=recording.notes.groups,
         config=config.filter,

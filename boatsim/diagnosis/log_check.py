@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from boatsim.diagnosis.answer.log_entry import column_sources, finding_entry, join_toml_lines
+from boatsim.diagnosis.answer.schema import LogEntry
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.command_range import widen_channel_ranges
-from boatsim.diagnosis.checks.entry import column_sources, finding_entry, join_toml_lines
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
@@ -15,7 +16,6 @@ from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings, check_same_vessel, vessel_of_recording_file
 from boatsim.diagnosis.question import set_up_estimation_problem
-from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, read

@@ -1,7 +1,8 @@
-"""The pipeline of a diagnosis.
+"""The pipeline of a diagnosis, from recordings to the answer.
 
-Its stages are load, check, fit, select, decide, describe, plan, adopt, validate and answer. Each is
-a function from the results of earlier stages to a frozen result. It can be called alone.
+Its stages are load, check, fit, select, decide, describe, plan, adopt, validate, locate and answer.
+Each stage is a function from the results of earlier stages to a frozen result. It can be called
+alone.
 """
 
 import json
@@ -10,12 +11,21 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from boatsim.diagnosis import loading
+from boatsim.diagnosis.answer.compose import compose_answer
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.incomplete import (
+    NOT_SELECTED_AGAIN,
+    TERMS_NOT_SOUGHT,
+    TIME_NOT_CHOSEN,
+)
+from boatsim.diagnosis.answer.results import collect_findings
+from boatsim.diagnosis.answer.schema import Answer
+from boatsim.diagnosis.answer.stages import Stages
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
@@ -30,20 +40,12 @@ from boatsim.diagnosis.evaluation import Evaluation, compare_models
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
 from boatsim.diagnosis.recalibration import decide_recalibration
-from boatsim.diagnosis.report.answer import compose_answer
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.incomplete import (
-    NOT_SELECTED_AGAIN,
-    TERMS_NOT_SOUGHT,
-    TIME_NOT_CHOSEN,
-)
-from boatsim.diagnosis.report.results import collect_findings
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import (
     Baseline,
@@ -221,7 +223,8 @@ def _fit_and_select(
     report("free runs", EVALUATING)
     ranking = adopt_refitted_coefficients(question, decision, ranking)
     evaluation = validate_on_held_out(question, decision, ranking)
-    stages = Stages(decision, ranking, evaluation, next_plan)
+    location = locate_missing_force(decision, ranking, evaluation)
+    stages = Stages(decision, ranking, evaluation, location, next_plan)
     return _compose(loaded, question, findings, stages, begin)
 
 
@@ -231,21 +234,10 @@ def _diagnose_without_fit(
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
     ranking, evaluation = results_without_fit(question.problem, question.held_out, where)
-    stages = Stages(decision_without_fit(question.problem, ranking), ranking, evaluation)
+    decision = decision_without_fit(question.problem, ranking)
+    location = locate_missing_force(decision, ranking, evaluation)
+    stages = Stages(decision, ranking, evaluation, location)
     return _compose(loaded, question, findings, stages, begin)
-
-
-class Stages(NamedTuple):
-    """Results of the stages of a diagnosis, from which its answer is composed.
-
-    They are the decision on effects, the ranking, the evaluation on held-out recordings and the
-    next experiment.
-    """
-
-    decision: Decision
-    ranking: Ranking
-    evaluation: Evaluation
-    plan: next_experiment.Plan | None = None
 
 
 def _compose(
@@ -257,19 +249,15 @@ def _compose(
 ) -> Diagnosis:
     """Compose the answer and what the report shows."""
     seconds = time.perf_counter() - begin
-    answer = compose_answer(
-        loaded,
-        question,
-        findings,
-        stages.decision,
-        stages.ranking,
-        stages.evaluation,
-        stages.plan,
-        seconds,
+    answer = compose_answer(loaded, question, findings, stages, seconds)
+    return Diagnosis(
+        findings=collect_findings(answer, loaded, question, stages),
+        vessel=loaded.vessel,
+        problem=stages.decision.problem,
+        ranking=stages.ranking,
+        remarks=loaded.remarks,
+        plan=stages.plan,
     )
-    problem = stages.decision.problem
-    shown = collect_findings(answer, loaded, question, problem, *stages[1:])
-    return Diagnosis(shown, loaded.vessel, problem, stages.ranking, loaded.remarks, stages.plan)
 
 
 def _is_finite(answer: Answer) -> bool:
@@ -487,6 +475,25 @@ def validate_on_held_out(question: Question, decision: Decision, ranking: Rankin
         ranking: Selected and described effects.
     """
     return compare_models(decision.problem, ranking, question.held_out)
+
+
+def locate_missing_force(decision: Decision, ranking: Ranking, evaluation: Evaluation) -> Location:
+    """Find along which axes, when and under which conditions the vessel model lacks a force.
+
+    Conditions are not tested where fits diverge, because the linear test would not hold.
+
+    Args:
+        decision: The problem with its correlation time.
+        ranking: Selected and described effects.
+        evaluation: Forces that the vessel models leave unexplained.
+    """
+    return locate_force(
+        decision.problem,
+        ranking.recalibrated,
+        evaluation.missing,
+        evaluation.remaining,
+        with_regions=not ranking.divergences,
+    )
 
 
 def plan_next_experiment(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:

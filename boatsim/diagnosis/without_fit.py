@@ -9,11 +9,12 @@ from boatsim.diagnosis.divergence import (
     first_rows_are_finite,
     raise_latent_force_level,
 )
-from boatsim.diagnosis.evaluation import MODELS, Evaluation, sort_by_input_order
+from boatsim.diagnosis.evaluation import Evaluation, sort_by_input_order
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.locate.missing_force import MissingForce, residual_force
 from boatsim.diagnosis.locate.residual_structure import CONSTANT, Structure
+from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.errors import BadInput
@@ -75,7 +76,16 @@ def results_without_fit(
         divergences=places,
     )
     some = tuple(force for force in forces if len(force.t))
-    evaluation = Evaluation(horizon, runs, rms_errors(runs), (), (), some, some, {})
+    evaluation = Evaluation(
+        horizon=horizon,
+        free_runs=runs,
+        errors=rms_errors(runs),
+        parts=(),
+        uninformative=(),
+        missing=some,
+        remaining=some,
+        mean_force={},
+    )
     return ranking, evaluation
 
 

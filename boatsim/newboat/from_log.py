@@ -24,8 +24,8 @@ from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording_parts
+from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
-from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel

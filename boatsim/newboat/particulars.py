@@ -236,19 +236,19 @@ def parse_particulars(
             f"--depth {options.depth:g}; allowed is more than the draught, {hull.draught:.3g} m"
         )
     return Particulars(
-        name,
-        hull,
-        options.draught is not None,
-        options.speed,
-        tuple(_parse_mounts(options, length, law)),
-        blade,
-        tuple(_parse_tunnel(text, length) for text in options.tunnels),
-        law,
-        _parse_helm(options.helm),
-        options.balance,
-        options.depth,
-        options.hull_beam is not None,
-        _parse_mass_uncertainty(options.mass_uncertainty),
+        name=name,
+        hull=hull,
+        draught_given=options.draught is not None,
+        speed=options.speed,
+        thrusters=tuple(_parse_mounts(options, length, law)),
+        rudder=blade,
+        tunnels=tuple(_parse_tunnel(text, length) for text in options.tunnels),
+        law=law,
+        helm=_parse_helm(options.helm),
+        mass_centre=options.balance,
+        depth=options.depth,
+        breadth_given=options.hull_beam is not None,
+        mass_sd=_parse_mass_uncertainty(options.mass_uncertainty),
     )
 
 

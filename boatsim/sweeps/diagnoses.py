@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.config import from_settings
-from boatsim.diagnosis.report import output_files
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.errors import BadInput, BoatsimError
 from boatsim.progress import Report, ignore_progress
 from boatsim.sweeps import table
@@ -181,7 +181,7 @@ def diagnose_task(task: DiagnosisTask) -> Entry:
             options.horizon,
             config=from_settings(dict(options.settings)),
         )
-        output_files.write_diagnosis(found, Path(task.folder))
+        write_diagnosis(found, Path(task.folder))
     except BoatsimError as error:
         return failure_entry(str(error))
     except Exception as error:

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.model_names import MODELS
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.formatting import format_in_one_unit
 from tests.pages import ROOT, figures, figures_agree

@@ -13,6 +13,7 @@ from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.answer.parameters import parameter_key
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.filter import (
     NoiseLevels,
@@ -21,7 +22,6 @@ from boatsim.diagnosis.filter import (
     prior_noise_levels,
 )
 from boatsim.diagnosis.problem import froude_scale
-from boatsim.diagnosis.report.parameters import parameter_key
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import effect_reference, load_class

@@ -10,9 +10,9 @@ from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
+from boatsim.diagnosis.output.patched_vessel import write_patched_vessel
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.recalibration import decide_recalibration, undetermined_coefficients
-from boatsim.diagnosis.report.patched_vessel import write_patched_vessel
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

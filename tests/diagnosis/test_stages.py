@@ -8,11 +8,12 @@ import pytest
 from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.answer.compose import compose_answer
+from boatsim.diagnosis.answer.stages import Stages
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.evaluation import MODELS
 from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
-from boatsim.diagnosis.report.answer import compose_answer
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -79,7 +80,11 @@ def test_later_stages_take_the_results_of_earlier_ones(
     evaluation = pipeline.validate_on_held_out(question, decision, ranking)
     assert set(MODELS) <= set(evaluation.free_runs[0].channels)
     plan = pipeline.plan_next_experiment(decision, ranking)
-    answer = compose_answer(loaded, question, (), decision, ranking, evaluation, plan, 1.0)
+    location = pipeline.locate_missing_force(decision, ranking, evaluation)
+    assert set(location.strengths) == set(location.remaining) == set(BOAT.dof)
+    stages = Stages(decision, ranking, evaluation, location, plan)
+    answer = compose_answer(loaded, question, (), stages, 1.0)
+    assert len(answer["where"]["region"]) == len(location.regions)
     assert answer["tried"] == [ONLY]
     assert answer["fit"]["held_out"] == [mapped.name for mapped in question.held_out]
     assert answer["config"]["load.row_rate"] == 4.0

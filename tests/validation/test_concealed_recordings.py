@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.report.schema import EffectEntry
+from boatsim.diagnosis.answer.schema import EffectEntry
 from boatsim.physics.effects import thrust_deadband, weak_reverse
 from boatsim.recordings.table import Recording
 from validation.real.concealed import alterations as a

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.report.schema import Answer
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, write_csv

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from boatsim.diagnosis.evaluation import MODELS as MODELS
+from boatsim.diagnosis.answer.schema import EffectEntry
+from boatsim.diagnosis.model_names import MODELS as MODELS
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.output_files import write_diagnosis
-from boatsim.diagnosis.report.schema import EffectEntry
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
 OUT = Path("out/real")

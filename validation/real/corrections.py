@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from boatsim.diagnosis import loading
-from boatsim.diagnosis.checks.entry import column_sources
+from boatsim.diagnosis.answer.log_entry import column_sources
 from boatsim.diagnosis.checks.finding import recording_toml_lines
 from boatsim.files import toml_key
 

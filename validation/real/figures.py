@@ -12,11 +12,12 @@ from pathlib import Path
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.checks import data_cleaning
-from boatsim.diagnosis.evaluation import MODELS, compared_fits
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
+from boatsim.diagnosis.model_names import MODELS
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.output_files import write_diagnosis
 from boatsim.progress import Report
 from validation.real.common import effects_of, format_fixed, parameter_text, print_table
 

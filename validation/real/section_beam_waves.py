@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.evaluation import MODELS, compared_fits
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
+from boatsim.diagnosis.model_names import MODELS
+from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.output_files import write_diagnosis
 from validation.real.common import RECORDINGS, out_option, print_table
 from validation.real.figures import HEADER, print_statements, progress_printer, split_groups
 

@@ -18,9 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.evaluation import MODELS, compared_fits
+from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
+from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.mapping import read_map

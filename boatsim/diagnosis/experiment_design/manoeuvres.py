@@ -7,6 +7,7 @@ from math import radians
 
 import numpy as np
 
+from boatsim.diagnosis.command_range import manoeuvre_commands
 from boatsim.diagnosis.config import DEFAULT, PlanConfig
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.physics.vessel import Vessel
@@ -121,19 +122,6 @@ def available_manoeuvres(
         if not _is_angle(name) and vessel.commands[name].low < 0:
             return _boat_manoeuvres(vessel, walls, config)
     return _ship_manoeuvres(vessel, usual_commands, config)
-
-
-def manoeuvre_commands(vessel: Vessel) -> tuple[str, ...]:
-    """Return the names of the commands that a manoeuvre sets on a vessel.
-
-    A command that feeds an actuator, such as a PWM signal, replaces the actuator's own command.
-    """
-    fed = set()
-    for effect in vessel.effects:
-        for target in vessel.target_actuators(effect):
-            if vessel.command_for_actuator(effect, target):
-                fed.add(target)
-    return tuple(name for name in vessel.commands if name not in fed)
 
 
 def _is_angle(command: str) -> bool:

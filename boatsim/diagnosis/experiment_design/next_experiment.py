@@ -26,7 +26,6 @@ from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
 )
 from boatsim.diagnosis.filter import FilterPass, MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem, froude_scale
-from boatsim.diagnosis.report.schema import NextEntry
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.files import toml_value
@@ -193,23 +192,6 @@ def _rivals_of_suspect(ranking: Ranking) -> dict[str, Fit]:
     if not names:
         return {NOTHING: ranking.without[suspect.name]}
     return {name: suspect.rivals[name] for name in names}
-
-
-def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:
-    """Return the entry of diagnosis.json on the experiment to record next; empty without a plan.
-
-    Args:
-        plan: The plan.
-        scenario: File name of its scenario.
-    """
-    if plan is None:
-        return {}
-    return {
-        "manoeuvre": plan.manoeuvre,
-        "scenario": scenario,
-        "separates": list(plan.separates),
-        "expected_gain_nats": round(plan.expected_log_bayes_factor, 2),
-    }
 
 
 def command_steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:

@@ -1,6 +1,7 @@
 """Mean of the force that a fit leaves unexplained: a constant force of the hull."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,13 +10,22 @@ from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.locate.smoothing import LatentForce, latent_force, variance_of_mean
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import MeanEntry
 from boatsim.physics.base import Array
+
+
+@dataclass(frozen=True)
+class MeanForce:
+    """The mean force or moment along one body axis that a vessel model leaves unexplained."""
+
+    mean: float  # [N, N m]
+    sd: float  # [N, N m]
+    unit: str
+    share_of_full_thrust: float | None = None  # of a force, if drives push the vessel ahead
 
 
 def mean_residual_force(
     problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
-) -> dict[str, MeanEntry]:
+) -> dict[str, MeanForce]:
     """Return the constant part of the force that a fitted vessel model leaves unexplained.
 
     It is the mean of the smoothed latent force over all recordings.
@@ -41,14 +51,14 @@ def mean_residual_force(
     sd = np.sqrt((weights**2 * np.array(variances)).sum(axis=0))
     limit = np.maximum(problem.config.locate.mean_force_min_sds * sd, problem.ambient.force)
     thrust = full_thrust(recordings[0])
-    entries: dict[str, MeanEntry] = {}
+    found: dict[str, MeanForce] = {}
     for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
         if abs(mean[i]) > limit[i]:
-            unit = FORCE_UNITS[axis]
-            entries[axis] = {"mean": float(mean[i]), "sd": float(sd[i]), "unit": unit}
-            if thrust > 0.0 and unit == "N":
-                entries[axis]["share_of_full_thrust"] = float(f"{abs(mean[i]) / thrust:.3g}")
-    return entries
+            share = None
+            if thrust > 0.0 and FORCE_UNITS[axis] == "N":
+                share = float(abs(mean[i]) / thrust)
+            found[axis] = MeanForce(float(mean[i]), float(sd[i]), FORCE_UNITS[axis], share)
+    return found
 
 
 def _variance(force: LatentForce) -> Array:

@@ -22,7 +22,6 @@ from boatsim.diagnosis.locate.smoothing import (
 )
 from boatsim.diagnosis.noise_levels import fit_latent_force_spectrum
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.schema import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
 
 FORCE_UNITS = {axis: "N m" if name.endswith("Nm") else "N" for axis, name in COMPONENTS.items()}
@@ -39,6 +38,15 @@ class MissingForce:
     t: Array  # (N,) s
     mean: Array  # (N, axes) [N, N m] body axes
     sd: Array  # (N, axes)
+
+
+@dataclass(frozen=True)
+class ForceStrength:
+    """Rms of a missing force along one axis over all recordings, and of its deviation."""
+
+    rms: float  # [N, N m]
+    sd: float  # [N, N m]
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -186,7 +194,7 @@ def _merged_intervals(
     return merged
 
 
-def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
+def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, ForceStrength]:
     """Return the rms over all recordings of the missing force of each axis, and of its deviation.
 
     Args:
@@ -195,11 +203,11 @@ def missing_force_rms(problem: Problem, forces: Sequence[MissingForce]) -> dict[
     """
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])
-    entries: dict[str, StrengthEntry] = {}
+    strengths: dict[str, ForceStrength] = {}
     for i, axis in enumerate(dof_in_state_order(problem.program.vessel)):
-        entries[axis] = {
-            "rms": float(np.sqrt(np.mean(mean[:, i] ** 2))),
-            "sd": float(np.sqrt(np.mean(sd[:, i] ** 2))),
-            "unit": FORCE_UNITS[axis],
-        }
-    return entries
+        strengths[axis] = ForceStrength(
+            rms=float(np.sqrt(np.mean(mean[:, i] ** 2))),
+            sd=float(np.sqrt(np.mean(sd[:, i] ** 2))),
+            unit=FORCE_UNITS[axis],
+        )
+    return strengths

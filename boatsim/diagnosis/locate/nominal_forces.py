@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.experiment_design.manoeuvres import manoeuvre_commands
+from boatsim.diagnosis.command_range import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array

@@ -1,1 +1,1 @@
-"""The answer: in words, figures, files."""
+"""The report of a diagnosis: the answer and its curves in words and figures."""

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.figures import unit_for_signal
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.physics.base import Array
 from boatsim.view.replay import Animation, Boat, Outline, playback_speed, rounded_or_none
 from boatsim.view.svg_plots import evenly_spaced_rows

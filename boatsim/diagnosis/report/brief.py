@@ -1,9 +1,8 @@
 """The result of a diagnosis in a few lines for a reader who has never seen one."""
 
-from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import model_names_in_words
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.model_names import MODELS, model_names_in_words
 from boatsim.view.formatting import (
     format_in_one_unit,
     format_number,

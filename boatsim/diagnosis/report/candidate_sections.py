@@ -5,10 +5,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.sentences import (
-    effect_description,
-)
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.verdict import effect_description
 from boatsim.view.formatting import (
     NO_ODDS,
     format_nats,

@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from boatsim.diagnosis.open_set.confirmation import Errors
-from boatsim.diagnosis.open_set.decision import Judgement
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.schema import AloneEntry, EffectEntry, Family
+from boatsim.diagnosis.answer.confirmation import error_changes
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.schema import EffectEntry, Family
 from boatsim.view.formatting import (
     format_in_one_unit,
     join_words,
@@ -27,22 +26,6 @@ OPEN = (
 )
 
 
-def effect_error_entry(errors: Mapping[str, Errors]) -> dict[Family, AloneEntry]:
-    """Return errors on held-out recordings without and with an effect, as in diagnosis.json.
-
-    The errors are those of simulations with the recorded commands alone.
-
-    Args:
-        errors: Rms errors by family of signals (position, heading, roll or heave).
-    """
-    found: dict[Family, AloneEntry] = {}
-    for family in FAMILIES:
-        if family in errors:
-            pair = errors[family]
-            found[family] = {"without": pair.without, "with": pair.with_effect}
-    return found
-
-
 def effect_sentences(effect: EffectEntry) -> list[str]:
     """Return sentences on how an identified effect changes the errors on held-out recordings.
 
@@ -52,7 +35,7 @@ def effect_sentences(effect: EffectEntry) -> list[str]:
         effect: Entry of an identified effect.
     """
     found = []
-    if changes := _changes(effect.get("alone", {})):
+    if changes := error_changes(effect.get("alone", {})):
         found.append(f"On held-out data adding it {join_words(changes)}.")
     if not effect.get("confirmed", True):
         found.append(OPEN)
@@ -67,44 +50,6 @@ def _latency_line(effect: EffectEntry) -> str:
     columns = LATE_COLUMNS[effect["name"]]
     lines = " / ".join(f"{column} = {delay['value']:.3g}" for column in columns)
     return f"Write into recording.toml: [latency] / {lines}"
-
-
-def _changes(alone: Mapping[Family, AloneEntry]) -> list[str]:
-    """Return phrases such as: reduces the position error from 0.52 m to 0.31 m."""
-    reduced, increased, same = list[str](), list[str](), list[str]()
-    for family, (words, unit) in FAMILIES.items():
-        if family not in alone:
-            continue
-        pair = alone[family]
-        before, after = format_in_one_unit([pair["without"], pair["with"]], unit)
-        if before == after:
-            same.append(f"the {words} error ({after})")
-        elif pair["with"] < pair["without"]:
-            reduced.append(f"the {words} error from {before} to {after}")
-        else:
-            increased.append(f"the {words} error from {before} to {after}")
-    found = []
-    for verb, phrases in (
-        ("reduces", reduced),
-        ("increases", increased),
-        ("does not change", same),
-    ):
-        if phrases:
-            found.append(f"{verb} {join_words(phrases)}")
-    return found
-
-
-def reason_unconfirmed(judged: Judgement) -> str:
-    """Return the reason, in words, why held-out recordings do not confirm an effect.
-
-    Args:
-        judged: Statistics and probability of the effect.
-    """
-    reason = "held-out recordings, which could show it, are explained as well without it"
-    changes = join_words(_changes(effect_error_entry(judged.alone)))
-    if changes:
-        reason += f": there adding it {changes}"
-    return reason
 
 
 def recalibration_sentences(f: Findings) -> list[str]:

@@ -3,24 +3,23 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from boatsim.diagnosis.report import figures
-from boatsim.diagnosis.report.confirmation import effect_sentences
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.schema import (
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.schema import (
     EffectEntry,
     ParameterEntry,
     StructureEntry,
     TermEntry,
 )
-from boatsim.diagnosis.report.sentences import (
+from boatsim.diagnosis.answer.verdict import (
     effect_description,
     effects_of_kind,
-    held_out_improvement_sentence,
     held_out_only_statement,
     ratio_sentences,
-    refined_number_rows,
 )
+from boatsim.diagnosis.report import figures
+from boatsim.diagnosis.report.confirmation import effect_sentences
+from boatsim.diagnosis.report.sentences import held_out_improvement_sentence, refined_number_rows
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
     capitalize,

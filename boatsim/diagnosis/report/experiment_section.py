@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.answer.findings import Findings
 from boatsim.view.formatting import (
     capitalize,
     evidence_strength,

@@ -5,18 +5,17 @@ from itertools import groupby
 
 import numpy as np
 
-from boatsim.diagnosis.description import FittedTerm
-from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.described_terms import (
+from boatsim.diagnosis.answer.described_terms import (
     abscissa_label,
     axis_force_words,
     term_axis,
     term_unit,
 )
-from boatsim.diagnosis.report.findings import MissingForceCurve
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
-from boatsim.diagnosis.report.schema import IntervalEntry
+from boatsim.diagnosis.answer.findings import MissingForceCurve
+from boatsim.diagnosis.answer.schema import IntervalEntry
+from boatsim.diagnosis.description import FittedTerm
+from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS, MODELS
 from boatsim.physics.base import Array
 from boatsim.view.formatting import capitalize, convenient_unit, format_number
 from boatsim.view.svg_plots import MARGIN, SQUARE, Line, Panel, axis_limits, figure

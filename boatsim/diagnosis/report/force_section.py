@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from boatsim.diagnosis.report import figures
-from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
-from boatsim.diagnosis.report.schema import (
+from boatsim.diagnosis.answer.findings import Findings, MissingForceCurve
+from boatsim.diagnosis.answer.schema import (
     IntervalEntry,
 )
-from boatsim.diagnosis.report.sentences import (
-    finds_only_measurement_errors,
-)
+from boatsim.diagnosis.answer.verdict import finds_only_measurement_errors
+from boatsim.diagnosis.report import figures
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
     capitalize,

@@ -1,6 +1,6 @@
 """Explanation of the terms of a report."""
 
-from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.answer.findings import Findings
 
 Entry = tuple[str, str]  # a term and its meaning
 

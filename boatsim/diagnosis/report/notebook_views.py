@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.figures import group_by_recording, model_error, unit_for_signal
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.notebook.arrow import UNIT

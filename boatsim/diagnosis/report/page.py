@@ -3,18 +3,17 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.report.described_terms import axis_force_words
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.replay_section import animated_replay
-from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import (
+from boatsim.diagnosis.answer.described_terms import axis_force_words
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.verdict import (
+    blames_log,
     finds_only_measurement_errors,
-    held_out_improvement_sentence,
-    mean_force_paragraph,
     tested_any_candidate,
     verdict_sentences,
 )
+from boatsim.diagnosis.report.replay_section import animated_replay
+from boatsim.diagnosis.report.sections import report_sections
+from boatsim.diagnosis.report.sentences import held_out_improvement_sentence, mean_force_paragraph
 from boatsim.files import replace_file
 from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.html_page import render_template
@@ -106,7 +105,7 @@ def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
 def _headline(f: Findings) -> str:
     """Return the sentence of the answer, or only names of effects and forces where it is long."""
     whole = _sentence(f)
-    if _log_problem(f):
+    if blames_log(f.answer):
         return f"{whole.partition('. ')[0]}."
     if len(whole) <= LONGEST_HEADLINE:
         return whole
@@ -131,7 +130,7 @@ def _lead(f: Findings) -> str:
     headline, whole = _headline(f), _sentence(f)
     if whole == headline:
         return ""
-    if not _log_problem(f):
+    if not blames_log(f.answer):
         return whole
     return f"{CORRECT_FIRST} {whole.removeprefix(headline).strip()}"
 
@@ -140,15 +139,10 @@ def _sentence(f: Findings) -> str:
     return f.answer["sentence"] or verdict_sentences(f.answer, f.words)
 
 
-def _log_problem(f: Findings) -> bool:
-    """Return whether the answer begins with a certain problem of the whole recording."""
-    return f.answer["sentence"].startswith(capitalize(LOG_NOT_BOAT))
-
-
 def _verdict(f: Findings) -> str:
     """Return the verdict in a few words."""
     verdict = f.answer["verdict"]
-    if _log_problem(f):
+    if blames_log(f.answer):
         return LOG_PROBLEM
     if verdict == "unknown" and not tested_any_candidate(f.answer):
         return NONE_TESTED

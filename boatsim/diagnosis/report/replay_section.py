@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.diagnosis.report.animation import animation_frames
 from boatsim.diagnosis.report.figures import (
     SIGNALS,
@@ -14,8 +16,6 @@ from boatsim.diagnosis.report.figures import (
     plan_view,
     signal_panel,
 )
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.view.formatting import format_number, join_words
 from boatsim.view.replay import (
     MARK,

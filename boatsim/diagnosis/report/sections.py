@@ -4,7 +4,12 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 
-from boatsim.diagnosis.checks.entry import alternative_correction_lines
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.log_entry import alternative_correction_lines
+from boatsim.diagnosis.answer.schema import (
+    LogEntry,
+)
+from boatsim.diagnosis.answer.verdict import reason_none_tested, tested_any_candidate
 from boatsim.diagnosis.report.candidate_sections import (
     candidate_ranking_section,
     limits_of_effects_not_found,
@@ -17,17 +22,9 @@ from boatsim.diagnosis.report.effect_sections import (
     unexplained_force_section,
 )
 from boatsim.diagnosis.report.experiment_section import next_experiment_section
-from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.force_section import missing_force_section
 from boatsim.diagnosis.report.glossary import glossary
-from boatsim.diagnosis.report.schema import (
-    LogEntry,
-)
-from boatsim.diagnosis.report.sentences import (
-    assumption_sentences,
-    reason_none_tested,
-    tested_any_candidate,
-)
+from boatsim.diagnosis.report.sentences import assumption_sentences
 from boatsim.diagnosis.report.validation_section import validation_section
 from boatsim.view.formatting import (
     capitalize,

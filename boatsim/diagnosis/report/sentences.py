@@ -1,31 +1,28 @@
-"""Sentences of a diagnosis: the verdict, its validation, the assumptions, the printed summary."""
+"""Sentences of a report: the validation, the assumptions, and the summary on the console."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from boatsim.diagnosis.evaluation import MODELS
-from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
-from boatsim.diagnosis.report.described_terms import axis_force_words
-from boatsim.diagnosis.report.experiment_section import is_optional
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings, setting_of
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
-from boatsim.diagnosis.report.schema import (
+from boatsim.diagnosis.answer.described_terms import axis_force_words
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.schema import (
     Answer,
     DisturbanceLevelEntry,
     EffectEntry,
     LeftOutEntry,
     MeanEntry,
-    ParameterEntry,
 )
+from boatsim.diagnosis.answer.verdict import effects_of_kind
+from boatsim.diagnosis.model_names import MODEL_WORDS, MODELS
+from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
+from boatsim.diagnosis.report.experiment_section import is_optional
 from boatsim.view.formatting import (
-    capitalize,
     format_cause_probability,
     format_in_one_unit,
     format_nats,
     format_number,
     format_odds,
-    format_parameter,
     format_quantity,
     join_words,
     name_in_words,
@@ -39,234 +36,7 @@ WAYS = {  # axis -> direction of a positive mean force, and of a negative one
     "pitch": ("bow up", "bow down"),
     "yaw": ("bow to starboard", "bow to port"),
 }
-COUNTS = ("no", "one", "two", "three", "four", "five", "six")
-# numbers of one effect, or formulas, in the verdict; the tables of the report have all of them
-MOST_NUMBERS = 3
-NONE_TESTED = (
-    "no candidate effect was tested: the facts of the recordings or the vessel file exclude all "
-    "of them"
-)
-NOTHING_RANKED = (
-    "no candidate effect was ranked and no coefficient was refitted, because the fits to these "
-    "recordings diverge"
-)
-NOTHING_MISSING = (
-    "No missing effect was found: the vessel model explains these recordings to within their noise."
-)
-
-NONE_MISSING_WITH_REFINED = (
-    "No missing effect was found: with {} refined, the vessel model explains these recordings to "
-    "within their noise."
-)
 NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
-
-
-def effect_description(effect_words: str) -> str:
-    """Return an effect's description without the remark that it is an error of the measurement.
-
-    The remark is "(not physics)".
-    """
-    return effect_words.removesuffix(" (not physics)")
-
-
-def tested_any_candidate(answer: Answer) -> bool:
-    """Return whether a diagnosis tested any candidate effect."""
-    return bool(answer["candidates"])
-
-
-def finds_only_measurement_errors(answer: Answer) -> bool:
-    """Return whether a diagnosis explains the mismatch by measurement errors alone.
-
-    No physics is then missing in the vessel model.
-    """
-    for effect in answer["effects"]:
-        if effect["kind"] != "measurement":
-            return False
-    return answer["verdict"] == "named"
-
-
-def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) -> str:
-    """Return the verdict of a diagnosis in a few sentences: what the vessel model lacks.
-
-    Args:
-        answer: Content of diagnosis.json; its own sentence is not read.
-        words: Meaning of parameters by "effect.parameter".
-
-    Returns:
-        Sentences on the identified effects with their first numbers, on formulas, and on what the
-        recordings cannot distinguish.
-    """
-    if answer["unknown"].get("diverges"):
-        return _cannot_follow(answer)
-    if not tested_any_candidate(answer):
-        return _none_tested(answer)
-    statements = _effects(answer, words or {})
-    statements += _formulas(answer, bool(answer["effects"]))
-    refined = _refined_numbers(answer)
-    if not statements and refined:
-        return NONE_MISSING_WITH_REFINED.format(refined)
-    if not statements:
-        return NOTHING_MISSING
-    statements += _look_alikes(answer["effects"])
-    if refined:
-        verb = "was" if len(answer["refined"]) == 1 else "were"
-        statements.append(f"{refined} {verb} refined")
-    return " ".join(f"{capitalize(statement)}." for statement in statements)
-
-
-def reason_none_tested(answer: Answer) -> str:
-    """Return the reason, in words, why a diagnosis tested no candidate effect.
-
-    Args:
-        answer: Content of diagnosis.json, without candidates.
-    """
-    if answer["unknown"].get("diverges"):
-        return NOTHING_RANKED
-    return NONE_TESTED
-
-
-def _cannot_follow(answer: Answer) -> str:
-    """Return from which time on, and along which axis, the model cannot follow each recording."""
-    places = []
-    for place in answer["unknown"]["diverges"][:MOST_NUMBERS]:
-        size = format_quantity(place["rms"], place["unit"], digits=2)
-        places.append(
-            f"from t = {place['from_s']:.4g} s of {place['run']}, in {place['axis']} "
-            f"({size} rms from then on)"
-        )
-    return (
-        f"The cause is unknown {join_words(places)}: the vessel's model can no longer follow the "
-        f"recording. {capitalize(NOTHING_RANKED)}."
-    )
-
-
-def _none_tested(answer: Answer) -> str:
-    if answer["verdict"] == "unknown":
-        return f"Something is missing{_unexplained_rms(answer)}, but {NONE_TESTED}."
-    return f"No force beyond the assumed disturbance is missing, but {NONE_TESTED}."
-
-
-def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
-    """Return statements on an unknown cause, on missing physics and on errors of measurement."""
-    statements = []
-    if answer["unknown"].get("stand_ins") and not answer["described"]:
-        statements.append(_stand_ins(answer))
-    elif sentence := held_out_only_statement(answer):
-        statements.append(sentence)
-    elif answer["unknown"]["flag"] and not answer["described"]:
-        statements.append(
-            f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
-        )
-        if found := answer["unknown"].get("structure"):
-            statements.append(f"in {found['axis']} it varies with {found['goes_with']}")
-    physics: list[str] = []
-    probable: list[str] = []
-    measured: list[str] = []
-    sure = setting_of(answer, "decide.sure_probability")
-    for effect in answer["effects"]:
-        if effect["kind"] == "measurement":
-            measured.append(_clause(effect, words))
-        elif _probability_with_look_alikes(answer, effect) < sure:
-            probable.append(_clause(effect, words))
-        else:
-            physics.append(_clause(effect, words))
-    addition = "in addition, " if statements else ""
-    if physics or probable:
-        statements.append(f"{addition}the model {_left_out(physics, probable)}")
-        statements += ratio_sentences(effects_of_kind(answer, "physics"))
-    if measured:
-        errors = "a measurement error"
-        if len(measured) > 1:
-            errors = count_in_words(len(measured), "measurement error")
-        if statements:
-            statements.append(f"in addition, the recordings contain {errors}: {_clauses(measured)}")
-        else:
-            statements.append(
-                f"no missing physics was found, but the recordings contain {errors}: "
-                f"{_clauses(measured)}"
-            )
-        statements += ratio_sentences(effects_of_kind(answer, "measurement"))
-    return statements
-
-
-def ratio_sentences(effects: Sequence[EffectEntry]) -> list[str]:
-    """Return the sentences on the main ratios of effects, in per cent.
-
-    Args:
-        effects: Identified effects.
-    """
-    found = []
-    for effect in effects:
-        for p in _main_parameters(effect).values():
-            if sentence := p.get("statement"):
-                if p.get("at_bound"):
-                    sentence += ", the bound of its range"
-                found.append(sentence)
-    return found
-
-
-def _main_parameters(effect: EffectEntry) -> dict[str, ParameterEntry]:
-    """Return the first fitted parameters of an effect, without those that may be zero."""
-    found = {}
-    for key, p in effect["parameters"].items():
-        if abs(p["value"]) > p["sd"] or "factor" in key:
-            found[key] = p
-    return dict(itertools.islice(found.items(), MOST_NUMBERS))
-
-
-def held_out_only_statement(answer: Answer) -> str:
-    """Return the statement that the cause is unknown only because of the held-out recordings.
-
-    They require a force that no candidate effect explains. Returns "" if that is not the reason.
-
-    Args:
-        answer: Content of diagnosis.json.
-    """
-    if answer["described"] or not answer["unknown"].get("held_out_only"):
-        return ""
-    return (
-        "the cause is unknown only because of the held-out recordings: the model explains the "
-        "fitted recordings, but the held-out ones require a force that no candidate effect explains"
-    )
-
-
-def _left_out(sure: Sequence[str], probable: Sequence[str]) -> str:
-    """Return which effects the model leaves out, and which it probably leaves out."""
-    if not sure:
-        effects = count_in_words(len(probable), "effect")
-        return f"probably leaves out {effects}: {_clauses(probable)}"
-    statement = f"leaves out {count_in_words(len(sure), 'effect')}: {_clauses(sure)}"
-    if probable:
-        more = COUNTS[len(probable)] if len(probable) < len(COUNTS) else str(len(probable))
-        statement += f"; and probably {more} more: {_clauses(probable)}"
-    return statement
-
-
-def _probability_with_look_alikes(answer: Answer, effect: EffectEntry) -> float:
-    """Return the probability that an effect or one of its look-alikes is a true cause."""
-    for one in answer.get("signs", {}).get("effects", []):
-        if one["name"] == effect["name"]:
-            return one["probability"]
-    return 1.0
-
-
-def _stand_ins(answer: Answer) -> str:
-    """Return the statement that an effect which explains the recordings is no likely cause."""
-    names, effects = answer["unknown"]["stand_ins"], []
-    for entry in answer.get("also_possible", []):
-        if entry["name"] in names:
-            effects.append(f"“{effect_description(entry['words'])}”, but {entry['why']}")
-    return (
-        f"something is missing whose cause is unknown: best described by {'; or by '.join(effects)}"
-    )
-
-
-def _refined_numbers(answer: Answer) -> str:
-    """Return the count of refined numbers in words, "" if there are none."""
-    refined = answer.get("refined", [])
-    if not refined:
-        return ""
-    return f"{count_in_words(len(refined), 'number')} of the rough model"
 
 
 def refined_number_rows(answer: Answer) -> list[list[str]]:
@@ -292,99 +62,6 @@ def refined_number_rows(answer: Answer) -> list[list[str]]:
             off = f"{100.0 * entry['off']:+.0f} %".replace("-", "−")
         rows.append([entry["number"], before, after, off])
     return rows
-
-
-def count_in_words(count: int, noun: str) -> str:
-    """Return a count of things in words, with numbers up to six spelt out: two effects."""
-    number_words = str(count)
-    if count < len(COUNTS):
-        number_words = COUNTS[count]
-    if count == 1:
-        return f"{number_words} {noun}"
-    return f"{number_words} {noun}s"
-
-
-def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
-    """Return statements on the formulas: those that generalize first, further events as a count."""
-    general, events = [], []
-    for law in answer["described"]:
-        if law["carries_over"]:
-            general.append(f"the model lacks {law['statement']}")
-        else:
-            events.append(law["statement"])
-    if not (general or effects_precede):
-        return [f"the model lacks {event}" for event in events[:MOST_NUMBERS]]
-    statements = general[:MOST_NUMBERS]
-    if len(events) == 1:
-        statements.append(f"one event of a single run remains: {events[0]}")
-    elif events:
-        statements.append(f"{len(events)} events of single runs remain, the first is {events[0]}")
-    if statements and effects_precede:
-        statements[0] = f"in addition, {statements[0]}"
-    return statements
-
-
-def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:
-    ties = []
-    for effect in effects:
-        if effect["tied_with"]:
-            rivals = join_words(map(name_in_words, effect["tied_with"]), "or")
-            ties.append(f"{name_in_words(effect['name'])} from {rivals}")
-    if not ties:
-        return []
-    return [f"these recordings cannot distinguish {join_words(ties)}"]
-
-
-def _unexplained_rms(answer: Answer) -> str:
-    """Return the rms force that remains unexplained, by axis, in brackets."""
-    axes = answer["unknown"].get("rest") or answer["where"]["axes"]
-    sizes = []
-    for axis, strength in axes.items():
-        size = format_quantity(strength["rms"], strength["unit"], digits=2)
-        sizes.append(f"{size} rms in {axis}")
-    if not sizes:
-        return ""
-    return f" ({join_words(sizes)})"
-
-
-def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    numbers = format_fitted_values(effect, words)
-    if not numbers:
-        return effect_description(effect["words"])
-    return f"{effect_description(effect['words'])} ({numbers})"
-
-
-def _clauses(clauses: Sequence[str]) -> str:
-    """Return clauses, which have commas of their own, as a list: A, B, and C."""
-    *head, tail = clauses
-    if not head:
-        return tail
-    return f"{', '.join(head)}, and {tail}"
-
-
-def format_fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    """Return the main fitted parameter values of an effect as text, without those that may be zero.
-
-    Ratios about which the effect has a sentence of its own are omitted.
-
-    Args:
-        effect: An identified effect.
-        words: Meaning of parameters by "effect.parameter".
-
-    Returns:
-        Text such as: astern factor 0.694 ± 0.012.
-    """
-    numbers = []
-    for key, p in _main_parameters(effect).items():
-        if p.get("statement"):
-            continue
-        name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
-        if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
-            name = words.get(f"{effect['name']}.{key}", name)
-        if p.get("at_bound"):
-            text += ", the bound of its range"
-        numbers.append(f"{name} {text}")
-    return ", ".join(numbers)
 
 
 def held_out_improvement_sentence(f: Findings) -> str:
@@ -537,16 +214,6 @@ def console_lines(f: Findings) -> list[str]:
         lines.append(f"{needed}: {wanted['manoeuvre']}")
         lines.append(f"  it distinguishes {rivals}; expected: {format_odds(expected)}")
     return lines
-
-
-def effects_of_kind(answer: Answer, kind: str) -> list[EffectEntry]:
-    """Return the identified effects that are missing physics, or those that are measurement errors.
-
-    Args:
-        answer: Content of diagnosis.json.
-        kind: "physics" or "measurement".
-    """
-    return [effect for effect in answer["effects"] if effect["kind"] == kind]
 
 
 def _effect_lines(title: str, effects: Sequence[EffectEntry], with_nats: bool) -> list[str]:

@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS, MODELS, model_names_in_words
 from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import recalibration_sentences
-from boatsim.diagnosis.report.families import FAMILIES
-from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.model_names import MODEL_WORDS, model_names_in_words
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
     format_in_one_unit,

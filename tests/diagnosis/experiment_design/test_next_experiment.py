@@ -15,6 +15,7 @@ from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis.candidates import candidate_library, instantiate_neutral_effect
+from boatsim.diagnosis.command_range import manoeuvre_commands
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
@@ -365,7 +366,7 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
 
 def test_pwm_takes_the_place_of_the_thrust_it_feeds():
     boat = vessel.load_vessel("joystick_boat")
-    assert set(manoeuvres.manoeuvre_commands(boat)) == {
+    assert set(manoeuvre_commands(boat)) == {
         "pwm_port",
         "pwm_starboard",
         "steer_port_rad",

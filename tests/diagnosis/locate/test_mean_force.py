@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from pushed_boat import laid, sail
 
-from boatsim.diagnosis.locate.mean_force import mean_residual_force
+from boatsim.diagnosis.locate.mean_force import MeanForce, mean_residual_force
 from boatsim.diagnosis.locate.smoothing import variance_of_average, variance_of_mean
 from boatsim.physics.base import Array
 
 FULL_THRUST = 2.0  # [N] of the two thrusters
 
 
-def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, float]:
+def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, MeanForce]:
     problem, best = laid(
         *(sail(f"run_{seed}", seed, lambda t, y, c: np.array(force(t)))[0] for seed in (1, 2))
     )
@@ -24,18 +24,18 @@ def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, floa
 @pytest.mark.parametrize("sway", [0.2, -0.2])
 def test_a_steady_push_is_told_with_its_size_side_and_share(sway: float) -> None:
     found = left(lambda t: (0.0, sway, 0.0))
-    assert set(found) == {"sway"} and found["sway"]["unit"] == "N"
+    assert set(found) == {"sway"} and found["sway"].unit == "N"
     assert (
-        found["sway"]["mean"] == pytest.approx(sway, abs=3 * found["sway"]["sd"])
-        and found["sway"]["sd"] < 0.06
+        found["sway"].mean == pytest.approx(sway, abs=3 * found["sway"].sd)
+        and found["sway"].sd < 0.06
     )
-    assert found["sway"]["share_of_full_thrust"] == pytest.approx(0.1, rel=0.3)
+    assert found["sway"].share_of_full_thrust == pytest.approx(0.1, rel=0.3)
 
 
 def test_a_moment_has_no_share_of_a_thrust() -> None:
     found = left(lambda t: (0.0, 0.0, 0.08))
-    assert set(found) == {"yaw"} and "share_of_full_thrust" not in found["yaw"]
-    assert found["yaw"]["mean"] == pytest.approx(0.08, rel=0.2)
+    assert set(found) == {"yaw"} and found["yaw"].share_of_full_thrust is None
+    assert found["yaw"].mean == pytest.approx(0.08, rel=0.2)
 
 
 @pytest.mark.parametrize(

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.report.candidate_sections import (
     candidate_ranking_section,
     upper_limits_section,
 )
 from boatsim.diagnosis.report.experiment_section import is_optional, next_experiment_section
 from boatsim.diagnosis.report.figures import missing_force_figures
-from boatsim.diagnosis.report.findings import Findings
 from boatsim.view.page_blocks import Table, Text
 from tests.diagnosis.report.test_page import planar
 

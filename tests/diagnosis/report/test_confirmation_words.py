@@ -4,15 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from boatsim.diagnosis.answer.confirmation import effect_error_entry
+from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.schema import RecalibrationEntry
 from boatsim.diagnosis.open_set.confirmation import Errors
-from boatsim.diagnosis.report.confirmation import (
-    effect_error_entry,
-    effect_sentences,
-    recalibration_sentences,
-)
-from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.page import report_html, report_markdown
-from boatsim.diagnosis.report.schema import RecalibrationEntry
 from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import console_lines
 from tests.diagnosis.report.test_page import planar

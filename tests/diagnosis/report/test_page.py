@@ -13,14 +13,14 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from boatsim.diagnosis.answer.findings import Findings, FreeRun, MissingForceCurve
+from boatsim.diagnosis.answer.schema import Answer, IntervalEntry
+from boatsim.diagnosis.answer.verdict import NONE_TESTED, verdict_sentences
 from boatsim.diagnosis.description import Curve, FittedTerm
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.figures import part_with_largest_error
-from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
-from boatsim.diagnosis.report.schema import Answer, IntervalEntry
 from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import NONE_TESTED, verdict_sentences
 from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from boatsim.diagnosis.answer.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.loading import recording_order
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.animation import FRAMES
-from boatsim.diagnosis.report.findings import Findings, FreeRun, MissingForceCurve
 from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, animated_replay
 from boatsim.diagnosis.report.sentences import mean_force_paragraph
 from boatsim.view.replay import LONGEST_REPLAY

@@ -8,17 +8,17 @@ import pytest
 from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.loading import LoadedRecordings, Request
-from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.question import Question, set_up_estimation_problem
-from boatsim.diagnosis.report.incomplete import (
+from boatsim.diagnosis.answer.incomplete import (
     COMPARED,
     INCOMPLETE,
     TERMS_NOT_SOUGHT,
     TIME_NOT_CHOSEN,
     incomplete_sentence,
 )
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search import ranking as ranking_stage
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_addition_to_phrase

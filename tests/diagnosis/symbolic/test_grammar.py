@@ -16,8 +16,8 @@ from boatsim.diagnosis.candidates import candidate_library, diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
-from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.symbolic import grammar
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel

@@ -11,14 +11,14 @@ import pytest
 from pushed_boat import BOAT, Late, laid, sail
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnosis.candidates import diagnosis_program
-from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.locate.nominal_forces import actuator_states
-from boatsim.diagnosis.report.described_terms import (
+from boatsim.diagnosis.answer.described_terms import (
     abscissa_label,
     coefficient_unit,
     factors_in_words,
 )
+from boatsim.diagnosis.candidates import diagnosis_program
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.diagnosis.symbolic.grammar import term_variants
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings

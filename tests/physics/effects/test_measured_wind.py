@@ -13,7 +13,8 @@ from answers import diagnosed
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, manoeuvre_commands
+from boatsim.diagnosis.command_range import manoeuvre_commands
+from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import open_recording
 from boatsim.errors import BadInput

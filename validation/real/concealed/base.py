@@ -8,8 +8,8 @@ import tomlkit
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import name_without_prefixes
+from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import CoefficientRelease
 from boatsim.physics.content import load_class
 from boatsim.physics.vessel import Vessel, load_vessel

@@ -6,12 +6,12 @@ from functools import partial
 
 import numpy as np
 
+from boatsim.diagnosis.answer.parameters import parameter_key
+from boatsim.diagnosis.answer.schema import EffectEntry
 from boatsim.diagnosis.candidates import FURTHER, name_without_prefixes
 from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.parameters import parameter_key
-from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect
 from validation.real.common import (

@@ -8,8 +8,8 @@ from pathlib import Path
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
+from boatsim.diagnosis.output import spread_table
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report import spread_table
 from boatsim.files import replace_file
 from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.content import effect_reference, find_content_file, vessel_reference

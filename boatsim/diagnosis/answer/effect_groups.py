@@ -5,14 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
+from boatsim.diagnosis.answer.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.candidates import FURTHER
 from boatsim.diagnosis.open_set.refinement import (
     number_without_addition,
     refines_estimated_number,
 )
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
-from boatsim.diagnosis.report.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
 from boatsim.physics.base import AXES, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.vessel import estimated_number_sd

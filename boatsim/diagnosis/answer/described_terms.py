@@ -4,8 +4,8 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import groupby
 
+from boatsim.diagnosis.answer.schema import DescribedEntry, TermEntry
 from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
-from boatsim.diagnosis.report.schema import DescribedEntry, TermEntry
 from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust

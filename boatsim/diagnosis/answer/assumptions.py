@@ -1,12 +1,12 @@
 """Entries of the answer on the candidates that were tested and on what was assumed."""
 
+from boatsim.diagnosis.answer.schema import DisturbanceLevelEntry, LeftOutEntry, RulesEntry
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import Question
-from boatsim.diagnosis.report.schema import DisturbanceLevelEntry, LeftOutEntry, RulesEntry
 from boatsim.diagnosis.search.evidence import required_gain
 
 BY_USER = "--without"  # reason for a candidate that the user excluded

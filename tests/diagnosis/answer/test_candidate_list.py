@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from boatsim.diagnosis.report.answer import candidate_entries
+from boatsim.diagnosis.answer.compose import candidate_entries
 
 
 def test_a_candidate_with_which_the_boat_diverges_is_omitted_and_voids_nothing() -> None:

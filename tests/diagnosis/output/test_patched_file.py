@@ -17,8 +17,8 @@ from boatsim.diagnosis.filter import (
     dof_in_state_order,
     rigid_body_values,
 )
+from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, CoefficientRelease

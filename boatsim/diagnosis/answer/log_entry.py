@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from boatsim.diagnosis.answer.schema import LogEntry
 from boatsim.diagnosis.checks.finding import (
     LOG_NOT_BOAT,
     Finding,
     correction_lines,
     recording_toml_lines,
 )
-from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import Expression
 from boatsim.recordings.table import read_unchecked

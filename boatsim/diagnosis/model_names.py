@@ -1,10 +1,14 @@
-"""Words for the vessel models that a report compares: before, retuned and corrected.
+"""Names of the vessel models that a diagnosis compares, and the words that a report has for them.
 
-diagnosis.json and the code call them nominal, recalibrated and patched.
+diagnosis.json and the code call them nominal, recalibrated and patched; a report calls them before,
+retuned and corrected.
 """
 
 from collections.abc import Iterable, Mapping
 
+# models that are compared, and the nominal one refitted to a part of the data alone
+MODELS = ("nominal", "recalibrated", "patched")
+ALONE = "alone"
 MODEL_WORDS: Mapping[str, str] = {
     "recorded": "recorded",
     "nominal": "before",  # the vessel file as given

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.atomic_folder import atomic_folder
-from boatsim.diagnosis.evaluation import MODELS
+from boatsim.diagnosis.answer.compose import NEXT_SCENARIO
+from boatsim.diagnosis.answer.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.experiment_design.next_experiment import scenario_text
 from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.model_names import MODEL_WORDS, MODELS
+from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report import page, patched_vessel
-from boatsim.diagnosis.report.answer import NEXT_SCENARIO
+from boatsim.diagnosis.report import page
 from boatsim.diagnosis.report.figures import group_by_recording
-from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
-from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.errors import BadPhysics
 from boatsim.files import replace_file
 from boatsim.physics.signals import COMPONENTS, Array

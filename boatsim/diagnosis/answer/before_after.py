@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boatsim.diagnosis.evaluation import ALONE, MODELS, Evaluation, PartErrors
+from boatsim.diagnosis.evaluation import Evaluation, PartErrors
+from boatsim.diagnosis.model_names import ALONE, MODELS, model_names_in_words
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.report.model_names import model_names_in_words
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.view.formatting import format_odds
 

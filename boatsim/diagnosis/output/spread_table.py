@@ -6,9 +6,9 @@ import numpy as np
 import tomlkit
 from tomlkit.items import Table
 
+from boatsim.diagnosis.answer.parameters import reported_sd
 from boatsim.diagnosis.filter_arguments import BODY
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.report.parameters import reported_sd
 
 DIGITS = 6  # significant
 

@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 from unmeasured import unmeasured
 
+from boatsim.diagnosis.answer.effect_groups import EffectGroups, classify_effects
+from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
+from boatsim.diagnosis.answer.schema import EffectEntry
+from boatsim.diagnosis.answer.verdict import verdict_sentences
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report.effect_groups import EffectGroups, classify_effects
-from boatsim.diagnosis.report.parameters import parameter_key, reported_sd
-from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import console_lines, refined_number_rows, verdict_sentences
+from boatsim.diagnosis.report.sentences import console_lines, refined_number_rows
 from boatsim.physics import vessel
 from boatsim.view.page_blocks import Table
 from tests.diagnosis.report.test_page import planar

@@ -1,6 +1,6 @@
 """Families of signals whose errors on held-out recordings are reported."""
 
-from boatsim.diagnosis.report.schema import Family
+from boatsim.diagnosis.answer.schema import Family
 
 FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in words, SI unit
     "position_rms_m": ("position", "m"),

@@ -4,18 +4,19 @@ from os.path import commonprefix
 
 import numpy as np
 
+from boatsim.diagnosis.answer import before_after
+from boatsim.diagnosis.answer.effect_entries import effect_meanings
+from boatsim.diagnosis.answer.findings import Findings, MissingForceCurve
+from boatsim.diagnosis.answer.schema import Answer
+from boatsim.diagnosis.answer.stages import Stages
 from boatsim.diagnosis.candidates import FURTHER, REORDERED, name_without_prefixes
 from boatsim.diagnosis.evaluation import Evaluation
-from boatsim.diagnosis.experiment_design import next_experiment
+from boatsim.diagnosis.experiment_design.next_experiment import command_steps
 from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question
-from boatsim.diagnosis.report import before_after
-from boatsim.diagnosis.report.answer import effect_meanings
-from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -25,10 +26,7 @@ def collect_findings(
     answer: Answer,
     loaded: LoadedRecordings,
     question: Question,
-    problem: Problem,
-    ranking: Ranking,
-    evaluation: Evaluation,
-    plan: next_experiment.Plan | None,
+    stages: Stages,
 ) -> Findings:
     """Collect all results of a diagnosis that the report shows: the answer and its curves.
 
@@ -36,32 +34,30 @@ def collect_findings(
         answer: Content of diagnosis.json.
         loaded: Recordings and vessels.
         question: Held-out recordings.
-        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
-        ranking: Result of the selection of effects, with the formula, if one was found.
-        evaluation: Free runs and unexplained forces.
-        plan: The next experiment.
+        stages: Results of the stages.
     """
-    vessel = loaded.vessel
+    vessel, problem = loaded.vessel, stages.decision.problem
+    ranking, evaluation = stages.ranking, stages.evaluation
     table = before_after.error_table(evaluation)
     return Findings(
-        answer,
-        vessel.name,
-        tuple(mapped.name for mapped in problem.recordings),
-        tuple(mapped.name for mapped in question.held_out),
-        loaded.note,
-        _missing(vessel, evaluation),
-        evaluation.free_runs,
-        before_after.limitation_sentences(problem, ranking, evaluation),
-        _coefficients(ranking.recalibrated),
-        (table,) if table else (),
-        effect_meanings(problem.candidates.values(), problem.program.vessel),
-        ranking.description.terms if ranking.description else (),
-        next_experiment.command_steps(plan),
-        (vessel.length, vessel.beam),
-        _names(loaded),
-        _coefficients(ranking.best),
-        _further_gains(ranking),
-        _own_effects(ranking),
+        answer=answer,
+        vessel=vessel.name,
+        runs=tuple(mapped.name for mapped in problem.recordings),
+        held_out=tuple(mapped.name for mapped in question.held_out),
+        held_out_note=loaded.note,
+        missing=_missing(vessel, evaluation),
+        free_runs=evaluation.free_runs,
+        remarks=before_after.limitation_sentences(problem, ranking, evaluation),
+        coefficients=_coefficients(ranking.recalibrated),
+        extra_tables=(table,) if table else (),
+        words=effect_meanings(problem.candidates.values(), problem.program.vessel),
+        described=ranking.description.terms if ranking.description else (),
+        steps=command_steps(stages.plan),
+        size=(vessel.length, vessel.beam),
+        names=_names(loaded),
+        corrected_coefficients=_coefficients(ranking.best),
+        further_gains=_further_gains(ranking),
+        own_effects=_own_effects(ranking),
     )
 
 

@@ -1,18 +1,18 @@
 """Signs of stand-ins in diagnosis.json, and the reason why an effect is only possible."""
 
-from boatsim.diagnosis.candidates import name_without_prefixes
-from boatsim.diagnosis.config import DecideConfig
-from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
-from boatsim.diagnosis.open_set.decision import Decision
-from boatsim.diagnosis.open_set.log_signs import LogSigns
-from boatsim.diagnosis.open_set.probability import exceeds_range
-from boatsim.diagnosis.report.schema import (
+from boatsim.diagnosis.answer.schema import (
     ConsistencyEntry,
     EffectSignsEntry,
     FactorEntry,
     SignsEntry,
     VariationEntry,
 )
+from boatsim.diagnosis.candidates import name_without_prefixes
+from boatsim.diagnosis.config import DecideConfig
+from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
+from boatsim.diagnosis.open_set.decision import Decision
+from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.open_set.probability import exceeds_range
 
 
 def cause_statistics_entry(decision: Decision) -> SignsEntry:

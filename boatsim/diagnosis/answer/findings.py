@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.config import DEFAULT, settings_by_name
 from boatsim.diagnosis.description import FittedTerm
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.report.schema import Answer
 from boatsim.physics.base import Array
 
 

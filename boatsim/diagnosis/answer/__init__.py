@@ -1,0 +1,1 @@
+"""Composes the answer of a diagnosis, the content of diagnosis.json, and its curves."""

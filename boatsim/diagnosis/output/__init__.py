@@ -1,0 +1,1 @@
+"""Output files of a diagnosis: report, answer, patched vessel, next experiment."""
