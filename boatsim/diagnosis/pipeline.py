@@ -41,6 +41,7 @@ from boatsim.diagnosis.report.incomplete import (
     NOT_SELECTED_AGAIN,
     TERMS_NOT_SOUGHT,
     TIME_NOT_CHOSEN,
+    failure_statement,
 )
 from boatsim.diagnosis.report.results import collect_findings
 from boatsim.diagnosis.report.schema import Answer
@@ -67,6 +68,8 @@ LOADED = 0.05
 SELECTING = (0.1, 0.7)
 DESCRIBING = (0.7, 0.85)
 EVALUATING = 0.9
+# errors of a computation whose numbers are singular or no longer finite
+NUMERICAL_ERRORS = (np.linalg.LinAlgError, FloatingPointError)
 
 
 @dataclass(frozen=True)
@@ -182,27 +185,37 @@ def diagnose_loaded(
     with threadpool_limits(1, "blas"):
         report("comparing what the columns may mean", SELECTING[0] / 2)
         findings = check_recordings(loaded, question)
-        found = None
-        with suppress(np.linalg.LinAlgError, FloatingPointError):
+        selected, found, failures = None, None, list[str]()
+        with suppress(*NUMERICAL_ERRORS):  # the vessel model diverges
             if has_measured_input(loaded.vessel):
                 base = fit_baseline_models(question).recalibrated
                 loaded, question = cut_unrecorded_pushes(loaded, question, base)
                 findings = (*findings, *loaded.findings[len(given) :])
-            found = _fit_and_select(loaded, question, findings, begin, report)
+            selected = _fit_and_select(loaded, question, findings, report)
+        if selected is not None:
+            try:
+                found = _complete(selected, begin, report)
+            except NUMERICAL_ERRORS as error:
+                failures.append(failure_statement("the validation of the selected effects", error))
         if found is None or not _is_finite(found.findings.answer):
             report("locating where the model cannot follow", EVALUATING)
-            found = _diagnose_without_fit(loaded, question, findings, begin)
+            found = _diagnose_without_fit(loaded, question, findings, failures, begin)
     return found
 
 
+class _Selected(NamedTuple):
+    """Results of the stages up to the decision, which later stages complete."""
+
+    loaded: LoadedRecordings
+    question: Question
+    findings: tuple[Finding, ...]
+    decision: Decision
+
+
 def _fit_and_select(
-    loaded: LoadedRecordings,
-    question: Question,
-    findings: Sequence[Finding],
-    begin: float,
-    report: Report,
-) -> Diagnosis | None:
-    """Run all stages after the checks; None if the vessel's own fit does not follow."""
+    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], report: Report
+) -> _Selected | None:
+    """Fit, select effects and decide; None if the vessel's own fit does not follow."""
     base = fit_baseline_models(question)
     if cannot_follow_recordings(question.problem, base.recalibrated):
         return None
@@ -214,10 +227,28 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
-    decision = decide_causes(question, selection)
-    ranking = describe_unexplained_force(question, decision, report_part_of(report, *DESCRIBING))
+    return _Selected(loaded, question, findings, decide_causes(question, selection))
+
+
+def _complete(selected: _Selected, begin: float, report: Report) -> Diagnosis:
+    """Run all stages after the decision.
+
+    The answer stays complete without a formula and without a next experiment: if one of these
+    stages fails, the answer states the reason.
+    """
+    loaded, question, findings, decision = selected
+    ranking, next_plan, failures = decision.ranking, None, list[str]()
+    try:
+        progress = report_part_of(report, *DESCRIBING)
+        ranking = describe_unexplained_force(question, decision, progress)
+    except NUMERICAL_ERRORS as error:
+        failures.append(failure_statement("the description of the unexplained force", error))
     report("planning what to record next", DESCRIBING[1])
-    next_plan = plan_next_experiment(decision, ranking)
+    try:
+        next_plan = plan_next_experiment(decision, ranking)
+    except NUMERICAL_ERRORS as error:
+        failures.append(failure_statement("the search for the next experiment", error))
+    ranking = _with_skipped(ranking, *failures)
     report("free runs", EVALUATING)
     ranking = adopt_refitted_coefficients(question, decision, ranking)
     evaluation = validate_on_held_out(question, decision, ranking)
@@ -226,11 +257,16 @@ def _fit_and_select(
 
 
 def _diagnose_without_fit(
-    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], begin: float
+    loaded: LoadedRecordings,
+    question: Question,
+    findings: Sequence[Finding],
+    failures: Sequence[str],
+    begin: float,
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
     ranking, evaluation = results_without_fit(question.problem, question.held_out, where)
+    ranking = _with_skipped(ranking, *failures)
     stages = Stages(decision_without_fit(question.problem, ranking), ranking, evaluation)
     return _compose(loaded, question, findings, stages, begin)
 
@@ -390,9 +426,9 @@ def select_candidates(
         return Selection(problem, _with_skipped(ranking, NOT_SELECTED_AGAIN))
 
 
-def _with_skipped(ranking: Ranking, statement: str) -> Ranking:
-    """A ranking with one more statement of what was not tried."""
-    return replace(ranking, skipped=(*ranking.skipped, statement))
+def _with_skipped(ranking: Ranking, *statements: str) -> Ranking:
+    """A ranking with further statements of what was not tried."""
+    return replace(ranking, skipped=(*ranking.skipped, *statements))
 
 
 def decide_causes(question: Question, selection: Selection) -> Decision:

@@ -381,7 +381,8 @@ class Answer(TypedDict):
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]
-    # what the search has not tried because its budget was spent, one clause each; usually empty
+    # what was not tried because the search's budget was spent, and late stages that failed, one
+    # clause each; usually empty
     skipped: NotRequired[list[str]]
     facts: NotRequired[dict[str, object]]
     rules: NotRequired[RulesEntry]

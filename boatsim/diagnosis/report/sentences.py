@@ -9,6 +9,7 @@ from boatsim.diagnosis.report.described_terms import axis_force_words
 from boatsim.diagnosis.report.experiment_section import is_optional
 from boatsim.diagnosis.report.families import FAMILIES
 from boatsim.diagnosis.report.findings import Findings, setting_of
+from boatsim.diagnosis.report.incomplete import is_failure
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.diagnosis.report.schema import (
     Answer,
@@ -490,7 +491,10 @@ def assumption_sentences(answer: Answer) -> list[str]:
         levels.append(f"{axis} {size}{_of_thrust(level)}")
     lines = [tested]
     for statement in answer.get("skipped", []):
-        lines.append(f"the search's budget was spent: {statement}")
+        if is_failure(statement):
+            lines.append(statement)
+        else:
+            lines.append(f"the search's budget was spent: {statement}")
     lines.append(f"assumed disturbance level (rms): {', '.join(levels)}")
     for rule, reason in answer["rules"]["overridden"].items():
         lines.append(f"{rule} is specified by the vessel file: {reason}")
