@@ -160,8 +160,7 @@ class Fleet:
             motion = start.initial_state_values()
             starts = [motion[signal.symbol] for signal in motion_signals(vessel.dof)]
         self.batch.reset(starts, input_vector(vessel, commands))
-        self._aboard.saturated[:] = 0.0
-        self._aboard.random = list(map(_sensor_generator, self.seeds.tolist()))
+        self._aboard.reseed(list(map(_sensor_generator, self.seeds.tolist())))
         self._periods = 0
         self._controlled.reset()
 
