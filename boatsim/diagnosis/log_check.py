@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
-from boatsim.diagnosis.checks.command_range import widen_channel_ranges
 from boatsim.diagnosis.checks.entry import column_sources, finding_entry, join_toml_lines
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding, has_result
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations

@@ -27,6 +27,7 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.diagnosis.problem import Problem
 from boatsim.errors import BadInput
+from boatsim.physics.signals import PLANAR_DOF
 from boatsim.recordings.table import Recording
 from boatsim.view.formatting import format_odds
 
@@ -79,7 +80,7 @@ def check_late_sensors(recordings: Sequence[Recording], problem: Problem) -> lis
     """
     config = problem.config.checks
     vessel = problem.program.vessel
-    if not {"surge", "sway", "yaw"} <= set(vessel.dof):
+    if not set(vessel.dof) >= PLANAR_DOF:
         return []
     for recording in recordings:
         if not {"x_m", "y_m", "psi_rad"} <= recording.signals.keys():

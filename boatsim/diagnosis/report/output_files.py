@@ -13,7 +13,7 @@ from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page, patched_vessel
 from boatsim.diagnosis.report.answer import NEXT_SCENARIO
-from boatsim.diagnosis.report.figures import group_by_recording
+from boatsim.diagnosis.report.figures import BAND, group_by_recording
 from boatsim.diagnosis.report.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.report.model_names import MODEL_WORDS
 from boatsim.errors import BadPhysics
@@ -22,7 +22,6 @@ from boatsim.physics.signals import COMPONENTS, Array
 from boatsim.recordings.table import Recording
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
-BAND = 2.0  # [sd] half width of the band of a missing force
 
 
 def write_diagnosis(found: Diagnosis, out: Path) -> None:
