@@ -108,6 +108,9 @@ class Diagnosis:
             recording: A recording of the same vessel.
             noise: Sensor noise, as standard deviations by family; None: that of its notes.
             vessel: The vessel with the settings of this recording; None: that of the first one.
+
+        Returns:
+            The recording on the program of this diagnosis, with the terms found.
         """
         program = self.problem.program
         if vessel is not None:
@@ -326,6 +329,9 @@ def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Find
     Args:
         loaded: Recordings with the findings of single files.
         question: The same recordings, mapped.
+
+    Returns:
+        The findings, each with the file of its recording.
     """
     problem = question.problem
     compared = compare_reinterpretations(loaded.fitted, question.map_recording, problem)
@@ -366,6 +372,9 @@ def find_ignored_commands(
         loaded: The recordings.
         question: The same recordings, mapped.
         base: Fits of the vessel without candidate effects.
+
+    Returns:
+        Findings of kind "drive", one for each recording that has such times.
     """
     names = [str(one.path or one.name) for one in (*loaded.fitted, *loaded.held_out)]
     recordings = (*question.problem.recordings, *question.held_out)
@@ -398,6 +407,9 @@ def select_candidates(
         base: Fits of the vessel without candidate effects.
         loaded: The recordings with their notes.
         report: Receives the progress.
+
+    Returns:
+        The ranking with the selected effects, and the problem with the correlation time.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
     budget = SearchBudget(problem.work_count, problem.config.select.budget)
@@ -437,6 +449,9 @@ def decide_causes(question: Question, selection: Selection) -> Decision:
     Args:
         question: Candidates and held-out recordings.
         selection: Selected effects.
+
+    Returns:
+        The decided ranking, with the statistics from which the probabilities follow.
     """
     problem, ranking = selection.problem, selection.ranking
     return judge_names(problem, ranking, question.held_out, len(question.candidates))
@@ -514,13 +529,14 @@ def adopt_refitted_coefficients(
 def validate_on_held_out(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
     """Compare the nominal, the recalibrated and the patched vessel model over held-out recordings.
 
-    The result contains free runs (simulations with the recorded commands alone), their errors and
-    the forces that each model leaves unexplained.
-
     Args:
         question: Held-out recordings.
         decision: The problem with its correlation time.
         ranking: Selected and described effects.
+
+    Returns:
+        Free runs (simulations with the recorded commands alone), their errors, and the forces that
+        each model leaves unexplained.
     """
     return compare_models(decision.problem, ranking, question.held_out)
 
@@ -528,11 +544,12 @@ def validate_on_held_out(question: Question, decision: Decision, ranking: Rankin
 def plan_next_experiment(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
     """Return the manoeuvre that would best decide what the diagnosis leaves open.
 
-    None is returned if no manoeuvre would add enough evidence.
-
     Args:
         decision: The problem, and the selection before the description.
         ranking: Selected and described effects.
+
+    Returns:
+        The manoeuvre with its expected gain of evidence; None if none would add enough.
     """
     before = replace(decision.ranking, named=ranking.named)
     question = next_experiment.undecided_hypotheses(before, decision.problem.config)

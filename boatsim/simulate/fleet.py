@@ -178,6 +178,10 @@ class Fleet:
 
         Returns:
             The log, with the first and the last state.
+
+        Raises:
+            BadInput: If a number is out of range, the log would be too long, or a control function
+                returns a channel that does not exist.
         """
         if seconds is None:
             seconds = self.scenario.file.duration
