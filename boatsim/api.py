@@ -342,6 +342,9 @@ def load_vessel(name: Name, load: Names = ()) -> Vessel:
         name: Name of a shipped vessel, its folder or its file.
         load: Load conditions in force.
 
+    Returns:
+        The vessel with its effects.
+
     Raises:
         BadInput: If the vessel or a load condition does not exist, or the file has a mistake.
 
@@ -366,6 +369,9 @@ def load_scenario(
         vessel: Vessel in place of the scenario's.
         controller: Name or file of a controller in place of the scenario's.
         changes: Top-level keys of the file that are replaced, such as `duration`.
+
+    Returns:
+        The scenario with its vessel and controller.
 
     Raises:
         BadInput: If scenario, controller and vessel do not fit each other.
@@ -399,6 +405,9 @@ def run(
         out: Folder for the files of the run; none are written by default.
         vessel: Vessel in place of the scenario's; not for a `Scenario`. With `out`, a vessel that
             differs from its file is saved in the folder `<out>_vessel`, which the recording names.
+
+    Returns:
+        The recording, the camera's recording and the metrics of the run.
 
     Raises:
         BadInput: If scenario, controller and vessel do not fit each other.
@@ -475,6 +484,9 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
         path: A .csv, .parquet or .rrd file.
         vessel: Name or file of the vessel; that of the recording.toml by default.
         load: Load conditions of the vessel.
+
+    Returns:
+        The recording in SI units, with the names of boatsim's columns.
 
     Raises:
         BadInput: One line with file, row and column of what can not be used.
@@ -647,6 +659,9 @@ def sweep(
         ray: Address of a Ray cluster on which to run.
         norms: Metrics in the report; all by default.
         report: Called with the progress.
+
+    Returns:
+        The results of all runs, with statistics of their metrics.
 
     Raises:
         BadInput: If a scenario, key, distribution or metric can not be used.

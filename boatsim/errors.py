@@ -1,4 +1,7 @@
-"""Exceptions of boatsim. Every mistake of a user ends in a message of one line and exit code 2."""
+"""Exceptions and warnings of boatsim, each with a message of one line.
+
+Every mistake of a user ends in such a message and exit code 2.
+"""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -48,6 +51,13 @@ class BadInput(BoatsimError):
 
 class BadPhysics(BoatsimError):
     """Raised for a model that cannot be simulated: its mass matrix or its state is not valid."""
+
+
+class BoatsimWarning(UserWarning):
+    """Base class of the warnings of boatsim, about what works but not as well as it could.
+
+    The command line prints the message as one line.
+    """
 
 
 def unknown_name_message(what: str, found: str, allowed: Iterable[str]) -> str:

@@ -26,16 +26,22 @@ class Stop:
 
     Attributes:
         requested: Whether a signal has arrived.
-        finishing: Set by the block when it no longer calls the object, for it only writes files.
     """
 
     def __init__(self) -> None:
         self.requested = signal_received()
-        self.finishing = False
+        self._finishing = False
 
     def __call__(self) -> bool:
         """Return whether the block should stop."""
         return self.requested
+
+    def finish(self) -> None:
+        """Let further signals wait until the block exits, since from now on it only writes files.
+
+        The block no longer calls the object afterwards.
+        """
+        self._finishing = True
 
     def record_signal(self, *_: object) -> None:
         """Record that a signal to stop the program has arrived.
@@ -46,7 +52,7 @@ class Stop:
         """
         global _received
         _received = True
-        if self.requested and not self.finishing:
+        if self.requested and not self._finishing:
             raise KeyboardInterrupt
         self.requested = True
 
@@ -55,7 +61,7 @@ class Stop:
 def deferred_signals() -> Iterator[Stop]:
     """Defer Ctrl-C and kill signals until the block exits; a run then stops after a complete step.
 
-    The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of
+    The block calls `stop.finish()` when it stops calling `stop`. A nested block is a part of
     the outer one. Outside the main thread nothing changes.
 
     Yields:

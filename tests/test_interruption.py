@@ -250,7 +250,7 @@ def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path) -> None:
     with deferred_signals() as stop, atomic_folder(tmp_path / "out") as new:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            stop.finishing = True
+            stop.finish()
             os.kill(os.getpid(), number)
         (new / "a").write_text("whole")
     assert stop() and (tmp_path / "out" / "a").read_text() == "whole"

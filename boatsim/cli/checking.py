@@ -10,7 +10,11 @@ from boatsim.diagnosis.log_check import check_files
 from boatsim.errors import escape_for_terminal
 
 # kinds of findings that are no fault of the log, with their titles
-INFORMATION = {"limit": "cannot be identified", "drive": "drive"}
+INFORMATION = {
+    "limit": "cannot be identified",
+    "drive": "drive",
+    "unchecked": "not checked",
+}
 NO_FINDINGS = "the checks found nothing wrong with this recording"
 
 

@@ -25,6 +25,7 @@ from boatsim.cli.exits import (
     one_line,
     print_error,
     print_lines,
+    print_warnings_as_notes,
 )
 from boatsim.cli.trust_prompt import trusted_content
 from boatsim.errors import BadInput, nearest_hint
@@ -1026,6 +1027,7 @@ def main() -> None:
     SIGTERM and SIGHUP end it in the same way as Ctrl-C.
     """
     raise_on_signals()
+    print_warnings_as_notes()
     try:
         app()
     except SystemExit as error:

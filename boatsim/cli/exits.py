@@ -1,11 +1,13 @@
 """Exit codes of the program, and functions that print errors, notes and results."""
 
 import sys
+import warnings
 from collections.abc import Iterable
 from enum import IntEnum
 from io import TextIOWrapper
+from typing import TextIO
 
-from boatsim.errors import BoatsimError, escape_for_terminal
+from boatsim.errors import BoatsimError, BoatsimWarning, escape_for_terminal
 from boatsim.quiet import CODE
 
 LONGEST = 300  # characters of a printed error; the middle of a longer one is cut
@@ -64,6 +66,26 @@ def print_notes(messages: Iterable[str]) -> None:
     """
     for message in messages:
         print_note(message)
+
+
+def print_warnings_as_notes() -> None:
+    """Print warnings of boatsim as notes of one line from now on; others as Python does."""
+    in_python = warnings.showwarning
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if issubclass(category, BoatsimWarning):
+            print_note(str(message))
+        else:
+            in_python(message, category, filename, lineno, file, line)
+
+    warnings.showwarning = show
 
 
 def print_lines(lines: Iterable[str]) -> None:

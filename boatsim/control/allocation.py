@@ -10,13 +10,14 @@ with R = hypot(B, L) and the neutral angle gamma = atan(B / L). B, L and the thr
 nominal; differences to the boat act on a control loop as a disturbance.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from boatsim.control.base import clip
 from boatsim.control.compiled import record_type
 from boatsim.physics.base import CheckedParameters, param
 from boatsim.physics.kernel.compiling import lean, merged
@@ -135,20 +136,7 @@ class Nominal(NamedTuple):
     sway_dead_zone: float  # [m/s]
 
 
-@merged
-def limit(value: float, low: float, high: float) -> float:
-    """Return the value limited to [low, high].
-
-    Args:
-        value: Value.
-        low: Lower limit.
-        high: Upper limit.
-    """
-    if value < low:
-        return low
-    if value > high:
-        return high
-    return value
+limit: Callable[[float, float, float], float] = merged(clip)  # `clip` for compiled callers
 
 
 @lean

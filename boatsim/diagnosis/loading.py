@@ -9,8 +9,8 @@ import numpy as np
 
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.accelerometer_clock import correct_pose_clock
+from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
-from boatsim.diagnosis.checks.command_range import widen_channel_ranges
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput

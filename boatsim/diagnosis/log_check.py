@@ -7,9 +7,9 @@ from pathlib import Path
 from boatsim.diagnosis.answer.log_entry import column_sources, finding_entry, join_toml_lines
 from boatsim.diagnosis.answer.schema import LogEntry
 from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
-from boatsim.diagnosis.checks.command_range import widen_channel_ranges
-from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding, has_result
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
@@ -71,10 +71,11 @@ def check_files(
             loaded = LoadedRecordings(usable, (), widened, "")
             question = set_up_estimation_problem(loaded, with_candidates=False)
             compared = compare_reinterpretations(usable, question.map_recording, question.problem)
-            if not compared:
-                compared = check_per_cent_commands(usable, question.problem)
-            if not compared and not any(f.name == "velocity_late" for f in findings):
-                compared = check_late_sensors(usable, question.problem)
+            if not has_result(compared):
+                compared += check_per_cent_commands(usable, question.problem)
+            velocity_is_late = any(f.name == "velocity_late" for f in findings)
+            if not has_result(compared) and not velocity_is_late:
+                compared += check_late_sensors(usable, question.problem)
             findings += [replace(f, run=str(usable[0].path)) for f in compared]
         except BadInput as error:
             refused.append(error)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -22,6 +23,7 @@ from boatsim.diagnosis.answer.incomplete import (
     NOT_SELECTED_AGAIN,
     TERMS_NOT_SOUGHT,
     TIME_NOT_CHOSEN,
+    failure_statement,
 )
 from boatsim.diagnosis.answer.results import collect_findings
 from boatsim.diagnosis.answer.schema import Answer
@@ -69,6 +71,8 @@ LOADED = 0.05
 SELECTING = (0.1, 0.7)
 DESCRIBING = (0.7, 0.85)
 EVALUATING = 0.9
+# errors of a computation whose numbers are singular or no longer finite
+NUMERICAL_ERRORS = (np.linalg.LinAlgError, FloatingPointError)
 
 
 @dataclass(frozen=True)
@@ -107,6 +111,9 @@ class Diagnosis:
             recording: A recording of the same vessel.
             noise: Sensor noise, as standard deviations by family; None: that of its notes.
             vessel: The vessel with the settings of this recording; None: that of the first one.
+
+        Returns:
+            The recording on the program of this diagnosis, with the terms found.
         """
         program = self.problem.program
         if vessel is not None:
@@ -184,27 +191,37 @@ def diagnose_loaded(
     with threadpool_limits(1, "blas"):
         report("comparing what the columns may mean", SELECTING[0] / 2)
         findings = check_recordings(loaded, question)
-        found = None
-        with suppress(np.linalg.LinAlgError, FloatingPointError):
+        selected, found, failures = None, None, list[str]()
+        with suppress(*NUMERICAL_ERRORS):  # the vessel model diverges
             if has_measured_input(loaded.vessel):
                 base = fit_baseline_models(question).recalibrated
                 loaded, question = cut_unrecorded_pushes(loaded, question, base)
                 findings = (*findings, *loaded.findings[len(given) :])
-            found = _fit_and_select(loaded, question, findings, begin, report)
+            selected = _fit_and_select(loaded, question, findings, report)
+        if selected is not None:
+            try:
+                found = _complete(selected, begin, report)
+            except NUMERICAL_ERRORS as error:
+                failures.append(failure_statement("the validation of the selected effects", error))
         if found is None or not _is_finite(found.findings.answer):
             report("locating where the model cannot follow", EVALUATING)
-            found = _diagnose_without_fit(loaded, question, findings, begin)
+            found = _diagnose_without_fit(loaded, question, findings, failures, begin)
     return found
 
 
+class _Selected(NamedTuple):
+    """Results of the stages up to the decision, which later stages complete."""
+
+    loaded: LoadedRecordings
+    question: Question
+    findings: tuple[Finding, ...]
+    decision: Decision
+
+
 def _fit_and_select(
-    loaded: LoadedRecordings,
-    question: Question,
-    findings: Sequence[Finding],
-    begin: float,
-    report: Report,
-) -> Diagnosis | None:
-    """Run all stages after the checks; None if the vessel's own fit does not follow."""
+    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], report: Report
+) -> _Selected | None:
+    """Fit, select effects and decide; None if the vessel's own fit does not follow."""
     base = fit_baseline_models(question)
     if cannot_follow_recordings(question.problem, base.recalibrated):
         return None
@@ -216,10 +233,28 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
-    decision = decide_causes(question, selection)
-    ranking = describe_unexplained_force(question, decision, report_part_of(report, *DESCRIBING))
+    return _Selected(loaded, question, findings, decide_causes(question, selection))
+
+
+def _complete(selected: _Selected, begin: float, report: Report) -> Diagnosis:
+    """Run all stages after the decision.
+
+    The answer stays complete without a formula and without a next experiment: if one of these
+    stages fails, the answer states the reason.
+    """
+    loaded, question, findings, decision = selected
+    ranking, next_plan, failures = decision.ranking, None, list[str]()
+    try:
+        progress = report_part_of(report, *DESCRIBING)
+        ranking = describe_unexplained_force(question, decision, progress)
+    except NUMERICAL_ERRORS as error:
+        failures.append(failure_statement("the description of the unexplained force", error))
     report("planning what to record next", DESCRIBING[1])
-    next_plan = plan_next_experiment(decision, ranking)
+    try:
+        next_plan = plan_next_experiment(decision, ranking)
+    except NUMERICAL_ERRORS as error:
+        failures.append(failure_statement("the search for the next experiment", error))
+    ranking = _with_skipped(ranking, *failures)
     report("free runs", EVALUATING)
     ranking = adopt_refitted_coefficients(question, decision, ranking)
     evaluation = validate_on_held_out(question, decision, ranking)
@@ -229,11 +264,16 @@ def _fit_and_select(
 
 
 def _diagnose_without_fit(
-    loaded: LoadedRecordings, question: Question, findings: Sequence[Finding], begin: float
+    loaded: LoadedRecordings,
+    question: Question,
+    findings: Sequence[Finding],
+    failures: Sequence[str],
+    begin: float,
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
     where = str(loaded.fitted[0].path or loaded.fitted[0].name)
     ranking, evaluation = results_without_fit(question.problem, question.held_out, where)
+    ranking = _with_skipped(ranking, *failures)
     decision = decision_without_fit(question.problem, ranking)
     location = locate_missing_force(decision, ranking, evaluation)
     stages = Stages(decision, ranking, evaluation, location)
@@ -278,6 +318,9 @@ def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Find
     Args:
         loaded: Recordings with the findings of single files.
         question: The same recordings, mapped.
+
+    Returns:
+        The findings, each with the file of its recording.
     """
     problem = question.problem
     compared = compare_reinterpretations(loaded.fitted, question.map_recording, problem)
@@ -318,6 +361,9 @@ def find_ignored_commands(
         loaded: The recordings.
         question: The same recordings, mapped.
         base: Fits of the vessel without candidate effects.
+
+    Returns:
+        Findings of kind "drive", one for each recording that has such times.
     """
     names = [str(one.path or one.name) for one in (*loaded.fitted, *loaded.held_out)]
     recordings = (*question.problem.recordings, *question.held_out)
@@ -350,6 +396,9 @@ def select_candidates(
         base: Fits of the vessel without candidate effects.
         loaded: The recordings with their notes.
         report: Receives the progress.
+
+    Returns:
+        The ranking with the selected effects, and the problem with the correlation time.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
     budget = SearchBudget(problem.work_count, problem.config.select.budget)
@@ -378,9 +427,9 @@ def select_candidates(
         return Selection(problem, _with_skipped(ranking, NOT_SELECTED_AGAIN))
 
 
-def _with_skipped(ranking: Ranking, statement: str) -> Ranking:
-    """A ranking with one more statement of what was not tried."""
-    return replace(ranking, skipped=(*ranking.skipped, statement))
+def _with_skipped(ranking: Ranking, *statements: str) -> Ranking:
+    """A ranking with further statements of what was not tried."""
+    return replace(ranking, skipped=(*ranking.skipped, *statements))
 
 
 def decide_causes(question: Question, selection: Selection) -> Decision:
@@ -389,6 +438,9 @@ def decide_causes(question: Question, selection: Selection) -> Decision:
     Args:
         question: Candidates and held-out recordings.
         selection: Selected effects.
+
+    Returns:
+        The decided ranking, with the statistics from which the probabilities follow.
     """
     problem, ranking = selection.problem, selection.ranking
     return judge_names(problem, ranking, question.held_out, len(question.candidates))
@@ -466,13 +518,14 @@ def adopt_refitted_coefficients(
 def validate_on_held_out(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:
     """Compare the nominal, the recalibrated and the patched vessel model over held-out recordings.
 
-    The result contains free runs (simulations with the recorded commands alone), their errors and
-    the forces that each model leaves unexplained.
-
     Args:
         question: Held-out recordings.
         decision: The problem with its correlation time.
         ranking: Selected and described effects.
+
+    Returns:
+        Free runs (simulations with the recorded commands alone), their errors, and the forces that
+        each model leaves unexplained.
     """
     return compare_models(decision.problem, ranking, question.held_out)
 
@@ -499,11 +552,12 @@ def locate_missing_force(decision: Decision, ranking: Ranking, evaluation: Evalu
 def plan_next_experiment(decision: Decision, ranking: Ranking) -> next_experiment.Plan | None:
     """Return the manoeuvre that would best decide what the diagnosis leaves open.
 
-    None is returned if no manoeuvre would add enough evidence.
-
     Args:
         decision: The problem, and the selection before the description.
         ranking: Selected and described effects.
+
+    Returns:
+        The manoeuvre with its expected gain of evidence; None if none would add enough.
     """
     before = replace(decision.ranking, named=ranking.named)
     question = next_experiment.undecided_hypotheses(before, decision.problem.config)

@@ -271,7 +271,7 @@ class Problem:
     specified_horizon: float | None = None  # [s] length of free runs, if not the usual one
     config: DiagnosisConfig = DEFAULT
     # prior sd of the coefficients of described terms, by the name of the effect
-    spreads: dict[str, float] = field(default_factory=dict)
+    spreads: Mapping[str, float] = field(default_factory=dict)
     program: Program = field(init=False)
     horizon: float = field(init=False)  # [s] length of free runs
     # coefficients of the vessel's own effects that are refitted with every hypothesis
@@ -298,6 +298,17 @@ class Problem:
         """
         other = copy(self)
         object.__setattr__(other, "recordings", recordings)
+        return other
+
+    def with_spread(self, effect: str, sd: float) -> "Problem":
+        """Return the same estimation problem with a prior of the coefficient of a described term.
+
+        Args:
+            effect: Name of the effect that has the term.
+            sd: Prior standard deviation of its coefficient.
+        """
+        other = copy(self)
+        object.__setattr__(other, "spreads", {**self.spreads, effect: sd})
         return other
 
     def _groups(self) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from boatsim.control.base import Controller, clip, wrap
 from boatsim.drive.driver_input import Sticks
 from boatsim.errors import BadInput
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import STATE, measured_column_for_goal
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate.manoeuvre import (
@@ -21,7 +22,6 @@ FROUDE = 0.15  # Froude number of the largest speed: well below hull speed
 SWAY_SHARE = 0.2  # largest sway speed as a share of the surge speed
 RADIUS = 2.0  # [L] radius of the turn at full speed
 LARGEST_YAW_RATE = 0.25 * pi  # [rad/s]
-GRAVITY = 9.81  # [m/s^2]
 DIGITS = 6  # decimals of a goal, so that a scenario file of many goals stays small
 HEADING = "psi_rad"
 

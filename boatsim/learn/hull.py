@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
 
-GRAVITY = 9.81  # [m/s^2]
 # The run under full thrust that measures the speed: interval of its rows, and their number after
 # which a vessel counts as one that does not move ahead.
 ROW_INTERVAL = 0.1  # [sqrt(L/g)]

@@ -23,7 +23,7 @@ from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import CoefficientRelease
-from boatsim.physics.native.build import NoCompiler, compiler_path
+from boatsim.physics.native.build import NoCompiler, compiler_path, warn_of_slow_compilation
 from boatsim.physics.native.declarations import NotTranslatable
 from boatsim.physics.native.library import native_program
 from boatsim.physics.signals import AXES, Array, MeasuredMotion
@@ -245,7 +245,10 @@ class Program:
         try:
             found: Any = native_program(cast(Any, self.module), library, compiler_path())
             return cast(CompiledProgram, found)
-        except (NoCompiler, NotTranslatable):
+        except NotTranslatable:
+            return self.module
+        except NoCompiler as error:
+            warn_of_slow_compilation(error)
             return self.module
 
 

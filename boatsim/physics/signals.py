@@ -19,6 +19,8 @@ from boatsim.physics.compiler_internals import register_with_numba
 Array = NDArray[np.float64]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+PLANAR_DOF = frozenset(("surge", "sway", "yaw"))
+ROTATIONS = ("roll", "pitch", "yaw")
 # force columns by degree of freedom
 COMPONENTS = dict(zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), strict=True))
 

@@ -162,14 +162,29 @@ class Recording:
         return self.signals[name]
 
     def unit(self, name: str) -> str:
-        """Return the unit of a signal by its name's suffix; "" for a number without a unit."""
+        """Return the unit of a signal by its name's suffix.
+
+        Args:
+            name: Name of the signal, such as "u_mps".
+
+        Returns:
+            The unit, such as "m/s"; "" for a number without a unit.
+        """
         check_instance("name", name, str, "a text")
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":
-        """Return the part of a recording with from_s <= t <= to_s [s]; times are not shifted.
+        """Return the part of a recording between two times; times are not shifted.
 
-        Raises BadInput if it has no rows.
+        Args:
+            from_s: First time [s].
+            to_s: Last time [s].
+
+        Returns:
+            The rows with from_s <= t <= to_s.
+
+        Raises:
+            BadInput: If there are no such rows.
         """
         for argument, value in (("from_s", from_s), ("to_s", to_s)):
             check_instance(argument, value, int | float | np.number, "a number")
@@ -193,6 +208,9 @@ class Recording:
 
         Args:
             rate: Rows per second of the result, approximately [Hz].
+
+        Returns:
+            The recording with fewer rows; the same recording if it has so few already.
         """
         rate = checked_number("rate", rate, 1e-9, 1e9, "Hz")
         if len(self.t) < 2:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 from boatsim.recordings.raw_table import select_rows
 
-DEGREES = 180.0 / math.pi
+DEGREES = 180.0 / math.pi  # [deg/rad]
 # Factor by which a ratio may differ from its expected value, for sensors have delay, drift and
 # scale errors
 RATIO_TOLERANCE = 1.5

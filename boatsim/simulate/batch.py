@@ -296,7 +296,13 @@ class Batch:
         self._update_masses(chosen)
 
     def get(self, parameter: str) -> Array:
-        """Return the value of one model parameter, "effect.parameter", of each vessel (n,).
+        """Return the value of one model parameter of each vessel.
+
+        Args:
+            parameter: Name of the parameter, as "effect.parameter".
+
+        Returns:
+            Values (n,) in the unit of the parameter.
 
         Raises:
             BadInput: If the name is unknown.

@@ -160,8 +160,7 @@ class Fleet:
             motion = start.initial_state_values()
             starts = [motion[signal.symbol] for signal in motion_signals(vessel.dof)]
         self.batch.reset(starts, input_vector(vessel, commands))
-        self._aboard.saturated[:] = 0.0
-        self._aboard.random = list(map(_sensor_generator, self.seeds.tolist()))
+        self._aboard.reseed(list(map(_sensor_generator, self.seeds.tolist())))
         self._periods = 0
         self._controlled.reset()
 
@@ -179,6 +178,10 @@ class Fleet:
 
         Returns:
             The log, with the first and the last state.
+
+        Raises:
+            BadInput: If a number is out of range, the log would be too long, or a control function
+                returns a channel that does not exist.
         """
         if seconds is None:
             seconds = self.scenario.file.duration

@@ -58,6 +58,15 @@ class FleetControl:
         )
         return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
+    def reseed(self, random: Sequence[np.random.Generator]) -> None:
+        """Begin with other random numbers, and with no saturated steps.
+
+        Args:
+            random: Random generators of the sensors of each vessel.
+        """
+        self.random = random
+        self.saturated[:] = 0.0
+
     def next_sensor_noise(self, boats: Boats, periods: int) -> Array:
         """Return the next random numbers (boats, periods, 7) of the sensor noise of each vessel."""
         samples = np.zeros((len(boats), periods, NOISES))

@@ -16,6 +16,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_reference
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array, motion_signals
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
@@ -262,7 +263,7 @@ def approach_speed(vessel: Vessel, speed: float | None = None) -> float:
 
 def _default_speed(vessel: Vessel) -> float:
     """The table's speed [m/s], by default that of Froude number 0.15, a slow speed."""
-    return vessel.manoeuvring.speed or 0.15 * float(np.sqrt(9.81 * vessel.length))
+    return vessel.manoeuvring.speed or 0.15 * float(np.sqrt(GRAVITY * vessel.length))
 
 
 def _dof_count(vessel: Vessel) -> int:

@@ -9,12 +9,12 @@ import warnings
 from functools import cache
 from typing import Any
 
-from boatsim.errors import BadPhysics
+from boatsim.errors import BadPhysics, BoatsimWarning
 from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compiler_internals import mujoco_layout, mujoco_library
 
 
-class SlowCallbackWarning(UserWarning):
+class SlowCallbackWarning(BoatsimWarning):
     """Warning that the forces of a vessel are computed by a slow callback in Python, not in C."""
 
 

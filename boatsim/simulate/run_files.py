@@ -158,7 +158,7 @@ def run_into_folder(
             ):
                 simulation = Simulation(scenario, replace(options, listener=listener), engine)
                 run = simulation.run()
-            stop.finishing = True  # signals must not cost the files now
+            stop.finish()  # signals must not cost the files now
             result = RecordedRun(run, evaluation.all_metrics(run))
             content = result.to_json()
             for observer in started:

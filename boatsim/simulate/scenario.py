@@ -251,7 +251,14 @@ class Scenario:
         return any(goal.get(OFF) for goal in self.file.goal)
 
     def goal_at(self, t: float) -> Mapping[str, float]:
-        """Return the controller's goals at time t [s], from the last [[goal]] that has begun."""
+        """Return the controller's goals at a time, from the last [[goal]] that has begun.
+
+        Args:
+            t: Time [s].
+
+        Returns:
+            Value of each goal by its name; empty before the first [[goal]].
+        """
         at = bisect_right(self._goal_begin_times, t + 1e-9) - 1
         if at < 0:
             return {}

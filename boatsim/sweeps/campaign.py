@@ -88,7 +88,7 @@ def run_campaign(campaign: Campaign, backend: Backend, report: Report = ignore_p
             report(campaign.label, (done - before) / (count - before), detail)
             if stop():
                 break
-        stop.finishing = True
+        stop.finish()
         entries = dict(sorted(journal.done.items()))
     return Outcome(entries, len(entries) == count)
 

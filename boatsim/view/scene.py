@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from boatsim.physics.base import Array
+from boatsim.physics.particulars import GRAVITY
 
 if TYPE_CHECKING:
     from boatsim.physics.vessel import Vessel
@@ -31,7 +32,6 @@ MESH = 7
 REACH = 0.6  # length of the arrow of full thrust, by the length of the vessel
 # force of an arrow of that length by the weight of a vessel whose thrust is not a command
 PUSH = 0.05
-GRAVITY = 9.81  # [m/s^2]
 
 
 class Solid(NamedTuple):

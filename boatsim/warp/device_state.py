@@ -57,7 +57,11 @@ class DeviceBoats:
             self.k.assign(k)
         else:
             self.p, self.k = self.copy_to_device(p), self.copy_to_device(k)
-            self.reallocations += 1
+            self.record_reallocation()
+
+    def record_reallocation(self) -> None:
+        """Record that an array has a new address, so that graphs of the GPU are recorded again."""
+        self.reallocations += 1
 
     def zeros_per_boat(self, *shape: int) -> Any:
         """Return an array (n, ...) of zeros on the device, with a row for each boat."""

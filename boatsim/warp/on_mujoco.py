@@ -91,7 +91,7 @@ class MujocoMotion:
                 array.assign(values)
             else:
                 setattr(self.model, name, b.copy_to_device(values, array.dtype))
-                b.reallocations += 1
+                b.record_reallocation()
 
     def set_states(self, y: Array) -> None:
         """Set joint coordinates and rates of all simulated boats.

@@ -41,6 +41,19 @@ def test_frequencies_and_rates_scale_with_the_root_of_the_length(name: str) -> N
     assert free["damping"].mean == pytest.approx(0.08)  # a ratio has the same value on any hull
 
 
+def test_a_problem_with_another_prior_leaves_the_first_one_and_its_copies_as_they_are() -> None:
+    waves = WaveForcing(name="wave_forcing")
+    problem = problem_of(vessel.load_vessel("joystick_boat"), waves)
+    other = problem.with_recordings(problem.recordings).with_spread("wave_forcing", 123.0)
+
+    def spreads(of: Problem) -> set[float]:
+        free = of.free_parameters(("wave_forcing",))
+        return {f.sd for f in free if f.effect == "wave_forcing"}
+
+    assert spreads(other) == {123.0} and not problem.spreads
+    assert 123.0 not in spreads(problem)
+
+
 def test_all_damping_coefficients_of_a_vessel_are_refitted() -> None:
     boat = vessel.load_vessel("catamaran")
     quadratic = QuadraticDamping(name="quadratic_damping", sway=20.0, yaw=1.0)

@@ -14,6 +14,7 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
+from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
@@ -95,3 +96,47 @@ def test_later_stages_take_the_results_of_earlier_ones(
         alone = effect["alone"]["position_rms_m"]
         assert alone["with"] == pytest.approx(position["patched"], rel=0.05)
     assert answer["seconds"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("stage", "words"),
+    [
+        ("describe_unexplained_force", "the description of the unexplained force"),
+        ("plan_next_experiment", "the search for the next experiment"),
+    ],
+)
+def test_a_late_stage_that_fails_is_reported_and_the_selection_is_kept(
+    stage: str,
+    words: str,
+    loaded: LoadedRecordings,
+    question: Question,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fail(*_: object) -> None:
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(pipeline, "set_up_estimation_problem", lambda *_: question)
+    monkeypatch.setattr(pipeline, stage, fail)
+    found = pipeline.diagnose_loaded(loaded, config=FAST)
+    answer = found.findings.answer
+    assert [effect["name"] for effect in answer["effects"]] == [ONLY]
+    assert "diverges" not in answer["unknown"]
+    statement = f"{words} failed and was skipped: Singular matrix"
+    assert answer["skipped"] == [statement]
+    assert answer["sentence"].endswith(f" T{statement[1:]}.")
+    assert statement in "\n".join(console_lines(found.findings))
+
+
+def test_a_validation_that_fails_states_its_reason(
+    loaded: LoadedRecordings, question: Question, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise FloatingPointError("overflow")
+
+    monkeypatch.setattr(pipeline, "set_up_estimation_problem", lambda *_: question)
+    monkeypatch.setattr(pipeline, "validate_on_held_out", fail)
+    answer = pipeline.diagnose_loaded(loaded, config=FAST).findings.answer
+    assert answer["verdict"] == "unknown"
+    assert answer["sentence"].endswith(
+        "The validation of the selected effects failed and was skipped: overflow."
+    )

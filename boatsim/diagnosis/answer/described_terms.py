@@ -9,6 +9,7 @@ from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.physics.described_laws import EVER, SymbolicTerm
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.physics.signals import ROTATIONS
 from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, split_history_name
 from boatsim.physics.vessel import Vessel
 from boatsim.view.formatting import (
@@ -43,7 +44,6 @@ FACTORS = {
 SIDES = {"all": "", "port": " to port", "starboard": " to starboard"}
 SENSES = {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}
 POWERS = {2: " squared", 3: " cubed"}
-TURNING = ("roll", "pitch", "yaw")
 FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
@@ -134,7 +134,7 @@ def term_unit(term: SymbolicTerm) -> str:
     axis = term_axis(term)
     if axis == "thrust":
         return ""
-    if axis in TURNING:
+    if axis in ROTATIONS:
         return "N m"
     return "N"
 
@@ -284,7 +284,7 @@ def coefficient_unit(term: SymbolicTerm, vessel: Vessel) -> str:
     powers = Counter[str]()
     if isinstance(term, DescribedForce):
         powers["N"] = 1
-        powers["m"] = int(term.axis in TURNING)
+        powers["m"] = int(term.axis in ROTATIONS)
     for name in term.of:
         signal = split_history_name(name, vessel.described_signals)[1] or name
         unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))

@@ -59,6 +59,8 @@ def finding_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEnt
         entry["remedy"] = finding.remedy
     if finding.kind == "fault":
         entry["words"] = LOG_NOT_BOAT
+    if finding.kind == "unchecked":
+        entry["words"] = "not checked"
     return entry
 
 

@@ -352,7 +352,7 @@ class LogEntry(TypedDict):
     run: str  # file
     name: str
     # "fault": correct the file; "mended": corrected by the diagnosis; "limit": nothing is wrong;
-    # "drive": how a drive answers its orders or how it reports
+    # "drive": how a drive answers its orders or how it reports; "unchecked": a check failed
     kind: str
     evidence: str
     sure: float  # probability
@@ -360,7 +360,7 @@ class LogEntry(TypedDict):
     lines: list[str]  # to write into recording.toml
     alternatives: list[OtherwiseEntry]
     remedy: NotRequired[str]
-    words: NotRequired[str]  # "probably your log, not your boat"
+    words: NotRequired[str]  # "probably your log, not your boat", or "not checked"
 
 
 class Answer(TypedDict):
@@ -381,7 +381,8 @@ class Answer(TypedDict):
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]
-    # what the search has not tried because its budget was spent, one clause each; usually empty
+    # what was not tried because the search's budget was spent, and late stages that failed, one
+    # clause each; usually empty
     skipped: NotRequired[list[str]]
     facts: NotRequired[dict[str, object]]
     rules: NotRequired[RulesEntry]

@@ -17,11 +17,11 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
+from boatsim.recordings.units import DEGREES
 
 REPORTED = "actual_"
 SENSED = ("actual_", "sensed_")
 TURN = 2.0 * np.pi  # [rad]
-DEGREES = 180.0 / np.pi
 
 
 class Response(NamedTuple):

@@ -12,7 +12,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, Expression
 from boatsim.recordings.table import Recording
 
-Kind = Literal["fault", "mended", "limit", "drive"]
+Kind = Literal["fault", "mended", "limit", "drive", "unchecked"]
 LOG_NOT_BOAT = "probably your log, not your boat"
 PLANAR_POSE = ("x_m", "y_m", "psi_rad")
 MAX_LISTED = 5  # places that the text of a finding lists
@@ -46,7 +46,8 @@ class Finding:
         evidence: The facts with numbers, for the user.
         kind: "fault" if the file must be corrected, "mended" if a diagnosis corrects it
             automatically, "limit" if the log is correct but does not identify some coefficients,
-            "drive" if it states how a drive answers its orders or how it reports.
+            "drive" if it states how a drive answers its orders or how it reports, "unchecked" if a
+            check could not be evaluated.
         probability: Probability that the finding is true.
         spans: Intervals [s] in which it appears; empty if it concerns the whole log.
         changes: Changes of columns that correct it.
@@ -84,6 +85,27 @@ class Finding:
         """
         certain = self.probability >= config.min_verdict_probability
         return self.kind == "fault" and bool(self.changes or self.clock) and certain
+
+
+def unchecked_finding(question: str, error: Exception) -> Finding:
+    """Return the remark that a check of a recording could not be evaluated, with the reason.
+
+    Args:
+        question: What the check would have decided, such as "whether the headings are late".
+        error: The error that ended the check.
+    """
+    reason = str(error) or type(error).__name__
+    return Finding(
+        "not_checked",
+        f"{question} could not be computed ({reason})",
+        kind="unchecked",
+        remedy="the other checks are not affected",
+    )
+
+
+def has_result(findings: Iterable[Finding]) -> bool:
+    """Return whether any finding says more than that a check could not be evaluated."""
+    return any(finding.kind != "unchecked" for finding in findings)
 
 
 def scaling_corrections(

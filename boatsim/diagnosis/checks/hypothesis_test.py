@@ -20,6 +20,7 @@ from boatsim.diagnosis.checks.finding import (
     apply_corrections_to_all,
     corrected_columns,
     scaling_corrections,
+    unchecked_finding,
 )
 from boatsim.diagnosis.checks.holes import part_before_first_hole
 from boatsim.diagnosis.checks.reinterpretations import (
@@ -55,6 +56,7 @@ class Score(NamedTuple):
 
     evidence: float  # [nats], coefficients refitted
     unexplained: float  # unexplained force as a share of the force of the drives
+    error: Exception | None = None  # why the recording could not be fitted
 
 
 @dataclass(frozen=True)
@@ -84,13 +86,13 @@ class Comparison:
         """Return how well the vessel model explains recordings whose columns are changed.
 
         The coefficients of the vessel are refitted. The log evidence is minus infinity if the
-        changed recordings cannot be fitted.
+        changed recordings cannot be fitted; the score then has the error.
         """
         try:
             problem = self.problem_with_changes(recordings, changes)
             _, recalibrated = fit_baseline(problem)
-        except (BadInput, np.linalg.LinAlgError, FloatingPointError):
-            return Score(-np.inf, np.inf)
+        except (BadInput, np.linalg.LinAlgError, FloatingPointError) as error:
+            return Score(-np.inf, np.inf, error)
         return Score(recalibrated.evidence, unexplained_force_share(problem, recalibrated))
 
     def is_explained(self, problem: Problem) -> bool:
@@ -117,7 +119,8 @@ def compare_reinterpretations(
         problem: The problem with the vessel as specified; its configuration is used.
 
     Returns:
-        Findings; a second fault is sought after the first is corrected.
+        Findings; a second fault is sought after the first is corrected. Last come remarks of kind
+        "unchecked" on versions that could not be fitted.
 
     Raises:
         BadInput: A recording can not be mapped to the vessel.
@@ -209,10 +212,12 @@ def _with_recorded_rudder(recording: Recording) -> Recording:
 
 def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:
     found: list[Finding] = []
+    remarks: list[Finding] = []
     corrected: tuple[Change, ...] = ()
     for _ in range(comparison.config.compare_max_faults):
         current = apply_corrections_to_all(recordings, corrected)
-        finding = _best_finding(current, comparison)
+        finding, unfitted = _best_finding(current, comparison)
+        remarks += [remark for remark in unfitted if remark not in remarks]
         if finding is None:
             break
         found.append(finding)
@@ -221,23 +226,44 @@ def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Fi
         corrected = (*corrected, *finding.changes)
         if comparison.is_explained(comparison.problem_with_changes(current, finding.changes)):
             break
-    return found
+    return [*found, *remarks]
 
 
-def _best_finding(recordings: list[Recording], comparison: Comparison) -> Finding | None:
-    """The finding for the best reinterpretation, if it is clearly better than all others."""
-    config = comparison.config
+def _best_finding(
+    recordings: list[Recording], comparison: Comparison
+) -> tuple[Finding | None, list[Finding]]:
+    """The finding for the best reinterpretation, if it is clearly better than all others.
+
+    The second result holds remarks on what could not be fitted.
+    """
     candidates = _likeliest(recordings, comparison)
     if not candidates:
-        return None
+        return None, []
+    remarks = []
     recorded = comparison.goodness_of_fit(recordings, ())
+    if recorded.error is not None:
+        question = "whether the columns have another meaning than the recorded one"
+        remarks.append(unchecked_finding(question, recorded.error))
     scored = []
     for candidate in candidates:
         score = comparison.goodness_of_fit(recordings, candidate.changes)
+        if score.error is not None:
+            remarks.append(unchecked_finding(f"whether {candidate.words}", score.error))
         if np.isfinite(score.evidence):
             scored.append((candidate, score))
     if not scored or not np.isfinite(recorded.evidence):
-        return None
+        return None, remarks
+    return _clear_finding(scored, recorded, recordings, comparison), remarks
+
+
+def _clear_finding(
+    scored: list[tuple[Reinterpretation, Score]],
+    recorded: Score,
+    recordings: list[Recording],
+    comparison: Comparison,
+) -> Finding | None:
+    """The finding for the best of some fitted reinterpretations, if it is clearly better."""
+    config = comparison.config
     best = max(score.evidence for _, score in scored)
     ties = []
     second = recorded.evidence

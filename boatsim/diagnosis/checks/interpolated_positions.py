@@ -4,14 +4,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import MAX_LISTED, PLANAR_POSE, Finding
+from boatsim.diagnosis.checks.last_digit import ROUNDED_DIGITS, decimal_step
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-# largest second difference of a straight line in units of the last digit: three rounded values
-ROUNDED_DIGITS = 2.1
-MAX_DECIMALS = 7
+# no log writes positions in metres with more decimals; others were computed and are not rounded
+MOST_DECIMALS = 7
+NOT_ROUNDED = 1e-8  # [m] resolution that then counts
 
 
 def check_interpolated_positions(
@@ -122,12 +123,8 @@ def _is_noisy(differences: Array, digit: float, config: ChecksConfig) -> bool:
 
 
 def _last_digit(values: Array) -> float:
-    """Resolution to which values (N,) are written."""
-    for decimals in range(1, MAX_DECIMALS + 1):
-        unit = 10.0**-decimals
-        if np.abs(values / unit - np.round(values / unit)).max() < 1e-3:
-            return unit
-    return 1e-8
+    """Resolution to which positions or headings (N,) are written."""
+    return decimal_step(values, MOST_DECIMALS) or NOT_ROUNDED
 
 
 def _runs(rows: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -10,19 +10,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.last_digit import ROUNDED_DIGITS, decimal_step
 from boatsim.diagnosis.checks.repeated_values import FIXES
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.recorded_channels import INSTRUMENT_CHANNELS
 from boatsim.recordings.table import Recording
+from boatsim.recordings.units import DEGREES
 
 # phrase in the remark, by which the finding recognizes it
 INTERPOLATED = "lie on straight lines between samples"
-# largest second difference of a straight line in units of the last digit: three rounded values
-ROUNDED_DIGITS = 2.1
-MAX_DECIMALS = 9
 COMPUTED = 1e-9  # relative resolution of values that were converted, such as degrees to metres
-DEGREES = 180.0 / np.pi
+MOST_DECIMALS = 9  # down to that resolution, for values of about 1
 
 
 def drop_interpolated_samples(
@@ -126,17 +125,8 @@ def _last_digit(values: Array) -> float:
             shown = values
             if begin is not None:
                 shown = np.remainder(values - begin, 2.0 * np.pi) + begin
-            coarsest = max(coarsest, _decimal_step(scale * shown) / scale)
+            coarsest = max(coarsest, decimal_step(scale * shown, MOST_DECIMALS) / scale)
     return coarsest
-
-
-def _decimal_step(values: Array) -> float:
-    """The largest power of ten of which all values (N,) are multiples; 0 if there is none."""
-    for decimals in range(1, MAX_DECIMALS + 1):
-        unit = 10.0**-decimals
-        if np.abs(values / unit - np.round(values / unit)).max() < 1e-3:
-            return float(unit)
-    return 0.0
 
 
 def _run_lengths(rows: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -11,7 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnosis.checks.finding import Change, Finding, delay_corrections
+from boatsim.diagnosis.checks.finding import (
+    Change,
+    Finding,
+    delay_corrections,
+    unchecked_finding,
+)
 from boatsim.diagnosis.checks.rivals import (
     FaultComparison,
     best_rival,
@@ -22,6 +27,7 @@ from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.diagnosis.problem import Problem
 from boatsim.errors import BadInput
+from boatsim.physics.signals import PLANAR_DOF
 from boatsim.recordings.table import Recording
 from boatsim.view.formatting import format_odds
 
@@ -71,11 +77,12 @@ def check_late_sensors(recordings: Sequence[Recording], problem: Problem) -> lis
         problem: The problem with the vessel as specified; its configuration is used.
 
     Returns:
-        One finding "late_positions" or "late_heading", or none.
+        One finding "late_positions" or "late_heading", or none; a remark of kind "unchecked" if
+        the comparison fails.
     """
     config = problem.config.checks
     vessel = problem.program.vessel
-    if not {"surge", "sway", "yaw"} <= set(vessel.dof):
+    if not set(vessel.dof) >= PLANAR_DOF:
         return []
     for recording in recordings:
         if not {"x_m", "y_m", "psi_rad"} <= recording.signals.keys():
@@ -92,8 +99,8 @@ def check_late_sensors(recordings: Sequence[Recording], problem: Problem) -> lis
             if suspect is None:
                 return []
             return _findings(compared, suspect, step)
-    except (BadInput, np.linalg.LinAlgError, FloatingPointError):
-        return []
+    except (BadInput, np.linalg.LinAlgError, FloatingPointError) as error:
+        return [unchecked_finding("whether positions or headings are late", error)]
 
 
 def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.checks.finding import Change, Finding, unchecked_finding
 from boatsim.diagnosis.checks.rivals import (
     FaultComparison,
     best_rival,
@@ -43,7 +43,7 @@ def check_per_cent_commands(recordings: Sequence[Recording], problem: Problem) -
         problem: The problem with the vessel as specified; its configuration is used.
 
     Returns:
-        One finding "command_unit", or none.
+        One finding "command_unit", or none; a remark of kind "unchecked" if the comparison fails.
     """
     config = problem.config.checks
     vessel = problem.program.vessel
@@ -71,8 +71,8 @@ def check_per_cent_commands(recordings: Sequence[Recording], problem: Problem) -
             per_cent = fit_with_rival_effects(
                 compared.problem_with_changes(changes, program), newtons, others
             )
-    except (BadInput, np.linalg.LinAlgError, FloatingPointError):
-        return []
+    except (BadInput, np.linalg.LinAlgError, FloatingPointError) as error:
+        return [unchecked_finding("whether the thrusts are in per cent", error)]
     best = max(per_cent.evidence, converted.evidence)
     if RIVALS[0] not in newtons.effects or best - newtons.evidence < config.per_cent_min_lead:
         return []

@@ -21,11 +21,11 @@ from boatsim.diagnosis.checks.finding import (
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
+from boatsim.physics.signals import PLANAR_DOF
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
-PLANAR_DOF = {"surge", "sway", "yaw"}
 QUARTER_TURNS = (pi / 2.0, pi, -pi / 2.0)
 MIRRORED_Y = (Change("y_m", "y_m", -1.0),)
 MIRRORED_HEADING = (Change("psi_rad", "psi_rad", -1.0), Change("r_radps", "r_radps", -1.0))

@@ -14,10 +14,9 @@ from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
 from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.physics.base import Array
 from boatsim.physics.effects.wall_effect import REACH
+from boatsim.physics.signals import PLANAR_DOF, ROTATIONS
 
 THRUST = "thrust"  # role of actuators whose value is a force
-PLANAR_DOF = {"surge", "sway", "yaw"}
-ROTATIONS = ("roll", "pitch", "yaw")
 FORWARD_SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
 
 

@@ -19,6 +19,7 @@ from boatsim.diagnosis.locate.nominal_forces import force_sensitivities
 from boatsim.diagnosis.locate.smoothing import information_with_cross_terms, latent_force
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 from boatsim.physics.base import Array
+from boatsim.physics.signals import ROTATIONS
 
 # share of the largest information on an axis below which a feature is ignored as rounding
 MIN_FEATURE_INFORMATION = 1e-9
@@ -26,7 +27,6 @@ LEAST_VARIANCE = 1e-9  # in prior variances, of a parameter that a fit holds at 
 CONSTANT = "nothing, it is constant"
 SINCE_START = "the time since the beginning"
 WITHIN = "time: it acts in"
-ROTATIONS = ("roll", "pitch", "yaw")
 PLACES = {
     "surge": "the position north or south",
     "sway": "the position east or west",

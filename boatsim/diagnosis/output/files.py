@@ -15,14 +15,13 @@ from boatsim.diagnosis.model_names import MODEL_WORDS, MODELS
 from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page
-from boatsim.diagnosis.report.figures import group_by_recording
+from boatsim.diagnosis.report.figures import BAND, group_by_recording
 from boatsim.errors import BadPhysics
 from boatsim.files import replace_file
 from boatsim.physics.signals import COMPONENTS, Array
 from boatsim.recordings.table import Recording
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
-BAND = 2.0  # [sd] half width of the band of a missing force
 
 
 def write_diagnosis(found: Diagnosis, out: Path) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.free_runs import FreeRun
@@ -33,12 +34,6 @@ SHOWN = {
     "nominal": (MODEL_WORDS["nominal"], "#c65102"),
     "recalibrated": (MODEL_WORDS["recalibrated"], "#0067b1"),
     "patched": (MODEL_WORDS["patched"], "#00815c"),
-}
-FAMILIES = {
-    "position_rms_m": ("position", "m"),
-    "heading_rms_rad": ("heading", "rad"),
-    "roll_rms_rad": ("roll", "rad"),
-    "heave_rms_m": ("heave", "m"),
 }
 
 
@@ -134,10 +129,10 @@ def _names() -> list[str]:
 def _error_rows(answer: Answer) -> list[list[str]]:
     """Rms errors of the models on held-out data, by family of signals."""
     rows = []
-    for family, errors in answer["fit"].items():
-        if family not in FAMILIES or not isinstance(errors, dict):
+    for family, (words, unit) in FAMILIES.items():
+        errors = answer["fit"].get(family)
+        if errors is None:
             continue
-        words, unit = FAMILIES[family]
         cells = [words]
         for model in SHOWN:
             if model in errors:

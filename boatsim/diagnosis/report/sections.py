@@ -78,9 +78,9 @@ def _log_problems(f: Findings) -> Iterator[Block]:
     """Yield the problems of the recordings with their corrections, and the measurement errors."""
     for e in f.answer.get("log", ()):
         cause = e.get("words", "corrected or allowed for by the diagnosis")
-        facts = (
-            f"{f.recording_name(e['run'])} · {cause} · probability {format_probability(e['sure'])}"
-        )
+        facts = f"{f.recording_name(e['run'])} · {cause}"
+        if e["kind"] != "unchecked":
+            facts += f" · probability {format_probability(e['sure'])}"
         yield Heading(capitalize(name_in_words(e["name"])), facts)
         yield Text(f"{capitalize(e['evidence'])}.")
         yield from _corrections(e)

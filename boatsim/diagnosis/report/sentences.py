@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.incomplete import is_failure
 from boatsim.diagnosis.answer.schema import (
     Answer,
     DisturbanceLevelEntry,
@@ -168,7 +169,10 @@ def assumption_sentences(answer: Answer) -> list[str]:
         levels.append(f"{axis} {size}{_of_thrust(level)}")
     lines = [tested]
     for statement in answer.get("skipped", []):
-        lines.append(f"the search's budget was spent: {statement}")
+        if is_failure(statement):
+            lines.append(statement)
+        else:
+            lines.append(f"the search's budget was spent: {statement}")
     lines.append(f"assumed disturbance level (rms): {', '.join(levels)}")
     for rule, reason in answer["rules"]["overridden"].items():
         lines.append(f"{rule} is specified by the vessel file: {reason}")

@@ -2,8 +2,12 @@
 
 The work is counted in integration steps times degrees of freedom: a pass of the filter with 1,000
 steps of a vessel in surge, sway and yaw counts 3,000, and more where it computes covariances. The
-count depends on the recordings and on the settings alone, never on the speed of the machine, so
-that a diagnosis gives the same answer everywhere.
+count never depends on the speed of the machine, so that a diagnosis of the same recordings with the
+same settings gives the same answer everywhere.
+
+A pass is counted when it is computed, not when its cached result is used again. The count of a
+stage therefore also depends on the stages before it: near the end of the budget, a stage that is
+called alone may try less than the same stage of a whole diagnosis.
 """
 
 from collections.abc import Iterable

@@ -75,7 +75,7 @@ class CandidateSets:
         self.banned: set[str] = set()
         # results of `add_further_effects` by the names of a set and of the candidates then banned
         self.further: dict[tuple[Set, Set], Fit | None] = {}
-        self.further_work = 0  # that `add_further_effects` has done
+        self.further_work = 0  # that `add_further_effects` has done [steps x dof]
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
         # log likelihoods of recordings that are held out, by the identities of these and of the fit
@@ -88,6 +88,14 @@ class CandidateSets:
             if isinstance(effect, RandomForce):
                 self.unsteady.add(name)
         self.required_gain = required_gain(len(candidates), self.config.select)
+
+    def add_further_work(self, work: int) -> None:
+        """Count work of the search for effects that hide each other.
+
+        Args:
+            work: Work [steps x dof].
+        """
+        self.further_work += work
 
     def explained_evidence(self, best: Fit) -> float:
         """Return the evidence that a fit's deterministic effects gain over the vessel alone [nats].

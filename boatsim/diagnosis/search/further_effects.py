@@ -38,7 +38,7 @@ def add_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     if key not in sets.further:
         before = sets.budget.used_work
         sets.further[key] = _find_further_effects(sets, best)
-        sets.further_work += sets.budget.used_work - before
+        sets.add_further_work(sets.budget.used_work - before)
     return sets.further[key]
 
 

@@ -41,10 +41,10 @@ def describe_residual_force(
         return None
     gains = {}
     for placeholder in found.terms:
-        gains[placeholder] = (
-            found.fit.evidence - refit_without_term(problem, found, placeholder).fit.evidence
-        )
-    general = _general(problem, found, Formula(best, {}), gains, recalibrated, held_out)
+        without = refit_without_term(found, placeholder)
+        gains[placeholder] = found.fit.evidence - without.fit.evidence
+    start = Formula(problem, best, {})
+    general = _general(problem, found, start, gains, recalibrated, held_out)
     written, recordings = [], fitted_recordings(problem, found.fit)
     for placeholder, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
         carries = placeholder in general.terms and not term.run
@@ -76,7 +76,7 @@ def _general(
     chain = [found]
     for placeholder in sorted(found.terms, key=lambda n: gains[n]):
         if not found.terms[placeholder].run:
-            chain.append(refit_without_term(problem, chain[-1], placeholder))
+            chain.append(refit_without_term(chain[-1], placeholder))
     events_only = chain[-1]
     if not set(start.fit.effects) <= set(events_only.fit.effects):
         chain.append(start)

@@ -18,6 +18,7 @@ from boatsim.physics.base import AXES, Array
 from boatsim.physics.described_laws import SymbolicTerm
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.effects.push import SteadyForce
+from boatsim.physics.signals import ROTATIONS
 from boatsim.physics.terms import SPEEDS
 from boatsim.physics.vessel import Vessel
 
@@ -129,7 +130,7 @@ def prior_force_sd(vessel: Vessel, term: SymbolicTerm) -> float:
     if isinstance(term, DescribedThrust):
         return THRUST_SHARE
     axis = str(getattr(term, "axis", ""))
-    unit = "N m" if axis in ("roll", "pitch", "yaw") else "N"
+    unit = "N m" if axis in ROTATIONS else "N"
     return FORCE.get(axis, FORCE["surge"]) * froude_scale(unit, vessel)
 
 

@@ -31,11 +31,13 @@ class Formula:
     """A fit of the vessel model with the terms that symbolic regression has added to it.
 
     Attributes:
+        problem: The estimation problem, with the priors of the terms' coefficients.
         fit: Fit of the vessel model.
         terms: Terms by the name of their placeholder effect, in the order in which they were added.
         complete: Whether further terms were sought until none gained enough, or there were enough.
     """
 
+    problem: Problem
     fit: Fit
     terms: dict[str, SymbolicTerm]
     complete: bool = True
@@ -43,8 +45,12 @@ class Formula:
 
 @dataclass(frozen=True)
 class _Extension:
-    """A formula with one more term: its placeholder, the fit, and the term as scored."""
+    """A formula with one more term: its placeholder, the fit, and the term as scored.
 
+    The problem has the prior of the term's coefficient.
+    """
+
+    problem: Problem
     placeholder: str
     fit: Fit
     scored: ScoredTerm
@@ -68,36 +74,36 @@ def select_terms(
     """
     report(DESCRIBING)
     config = problem.config
-    formula = Formula(best, {})
+    formula = Formula(problem, best, {})
     budget = SearchBudget(problem.work_count, config.describe.budget)
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     while len(formula.terms) < config.describe.most_terms:
         if formula.terms and budget.is_spent:
             return replace(formula, complete=False)
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
-        extensions = _extensions(problem, formula, ordered, refused, everywhere)
+        extensions = _extensions(formula, ordered, refused, everywhere)
         if not extensions:
             break
         extension = max(extensions, key=lambda t: t.fit.evidence)
         # the placeholder has the term of the last extension
-        _write_scored(problem, extension.placeholder, extension.scored, everywhere)
-        term, found = _refined(problem, formula, extension, everywhere)
-        found = converge(problem, found)
+        set_placeholder_term(problem, extension.placeholder, extension.scored.term, everywhere)
+        extended = _refined(formula, extension, everywhere)
+        found = converge(problem, extended.fit)
         gained = formula.fit.evidence - best.evidence
         required = max(
             required_gain(len(ordered), config.select), config.select.slight_share * gained
         )
         if found.evidence - formula.fit.evidence < required:
             break
-        extended = Formula(found, formula.terms | {extension.placeholder: term})
+        extended = replace(extended, fit=found)
         fewer: dict[str, Formula] = {}
-        if _replaces_effect(problem, formula, extended, fewer):
+        if _replaces_effect(formula, extended, fewer):
             refused.add(term_family(extension.scored.term))
             continue
-        formula = _pruned(problem, extended, fewer)
+        formula = _pruned(extended, fewer)
         ends = budget.is_spent and len(formula.terms) < config.describe.most_terms
         if len(formula.terms) > 1 and not ends:
-            formula = _refine_all(problem, formula, everywhere)
+            formula = _refine_all(formula, everywhere)
         count, gain = len(formula.terms), found.evidence - best.evidence
         done = count / config.describe.most_terms
         report(DESCRIBING, done, f"{count} terms ({gain:.0f} nats)")
@@ -114,7 +120,6 @@ def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[
 
 
 def _extensions(
-    problem: Problem,
     formula: Formula,
     ordered: Sequence[ScoredTerm],
     refused: set[Family],
@@ -126,8 +131,8 @@ def _extensions(
         if scored.gain > 0.0 and term_family(scored.term) not in refused:
             best.append(scored)
     extensions = []
-    for scored in best[: problem.config.describe.fitted_terms]:
-        if extension := _with_term(problem, formula, scored, everywhere):
+    for scored in best[: formula.problem.config.describe.fitted_terms]:
+        if extension := _with_term(formula, scored, everywhere):
             extensions.append(extension)
     return extensions
 
@@ -158,22 +163,13 @@ def best_term_of_each_family(ordered: Sequence[ScoredTerm]) -> list[ScoredTerm]:
     return list(best.values())
 
 
-def _write_scored(
-    problem: Problem, placeholder: str, scored: ScoredTerm, everywhere: Recordings
-) -> None:
-    """Write a term into a placeholder, and the prior of its coefficient into the problem."""
-    set_placeholder_term(problem, placeholder, scored.term, everywhere)
-    problem.spreads[placeholder] = scored.spread
-
-
-def _with_term(
-    problem: Problem, formula: Formula, scored: ScoredTerm, everywhere: Recordings
-) -> _Extension | None:
+def _with_term(formula: Formula, scored: ScoredTerm, everywhere: Recordings) -> _Extension | None:
     """Fit the formula with one more term; None without a free placeholder or if it diverges."""
-    placeholder = unused_placeholder(problem, type(scored.term), list(formula.terms))
+    placeholder = unused_placeholder(formula.problem, type(scored.term), list(formula.terms))
     if not placeholder:
         return None
-    _write_scored(problem, placeholder, scored, everywhere)
+    problem = formula.problem.with_spread(placeholder, scored.spread)
+    set_placeholder_term(problem, placeholder, scored.term, everywhere)
     base, config = formula.fit, problem.config.fit
     effects = (*base.effects, placeholder)
     free = problem.free_parameters(effects)
@@ -189,18 +185,16 @@ def _with_term(
     found = gauss_newton(problem, start, config.first_steps, config.refit_gain)
     if not np.isfinite(found.evidence):
         return None
-    return _Extension(placeholder, fit(problem, found), scored)
+    return _Extension(problem, placeholder, fit(problem, found), scored)
 
 
-def _refined(
-    problem: Problem, formula: Formula, extension: _Extension, everywhere: Recordings
-) -> tuple[SymbolicTerm, Fit]:
-    """Refine the times or lengths of the newest term; return the term and the fit with it."""
-    config, placeholder, found = problem.config.describe, extension.placeholder, extension.fit
-    scored = extension.scored
-    if not term_variants(scored.term, problem.recordings, config.coarse_refinement[0], config):
-        return scored.term, found
-    recordings, best = fitted_recordings(problem, formula.fit), scored
+def _refined(formula: Formula, extension: _Extension, everywhere: Recordings) -> Formula:
+    """Return the formula with the newest term, its times or lengths refined."""
+    problem, placeholder = extension.problem, extension.placeholder
+    term, config = extension.scored.term, problem.config.describe
+    if not term_variants(term, problem.recordings, config.coarse_refinement[0], config):
+        return Formula(problem, extension.fit, formula.terms | {placeholder: term})
+    recordings, best = fitted_recordings(problem, formula.fit), extension.scored
     for step in config.coarse_refinement:
         for _ in range(config.refinement_moves):
             near = term_variants(best.term, problem.recordings, step, config)
@@ -208,13 +202,15 @@ def _refined(
             if not moved or moved[0].gain <= best.gain:
                 break
             best = moved[0]
-    if best.term != scored.term:
-        better = _with_term(problem, formula, best, everywhere)
-        if better and better.fit.evidence > found.evidence:
-            scored, found = best, better.fit
+    if best.term != term:
+        better = _with_term(formula, best, everywhere)
+        if better and better.fit.evidence > extension.fit.evidence:
+            extension = better
         else:
-            _write_scored(problem, placeholder, scored, everywhere)
-    return _refined_by_filter(problem, placeholder, scored.term, found, everywhere)
+            set_placeholder_term(problem, placeholder, term, everywhere)
+    problem, term = extension.problem, extension.scored.term
+    term, found = _refined_by_filter(problem, placeholder, term, extension.fit, everywhere)
+    return Formula(problem, found, formula.terms | {placeholder: term})
 
 
 def _refined_by_filter(
@@ -240,16 +236,16 @@ def _refined_by_filter(
     return term, found
 
 
-def _refine_all(problem: Problem, formula: Formula, everywhere: Recordings) -> Formula:
+def _refine_all(formula: Formula, everywhere: Recordings) -> Formula:
     """Refine all terms in the presence of the others, of which they may have explained a part."""
-    refined, found = dict(formula.terms), formula.fit
+    problem, refined, found = formula.problem, dict(formula.terms), formula.fit
     for placeholder, term in formula.terms.items():
         refined[placeholder], found = _refined_by_filter(
             problem, placeholder, term, found, everywhere
         )
     if found is formula.fit:
         return formula
-    return Formula(converge(problem, found), refined)
+    return Formula(problem, converge(problem, found), refined)
 
 
 def _moved(
@@ -276,50 +272,47 @@ def _moved(
     return term
 
 
-def _replaces_effect(
-    problem: Problem, before: Formula, extended: Formula, fewer: dict[str, Formula]
-) -> bool:
+def _replaces_effect(before: Formula, extended: Formula, fewer: dict[str, Formula]) -> bool:
     """Return whether the newest term only replaces an identified effect.
 
     It does if the effect alone explains most of what the term explains. The effect is the better
     answer even if it is a little less exact: wind, not a side force that varies with the heading.
     Refits of the extended formula without an effect are added to `fewer`, by its name.
     """
-    config = problem.config.select
+    config = before.problem.config.select
     for name in before.fit.effects:
         if name in before.terms:
             continue
-        fewer[name] = refit_without_term(problem, extended, name)
+        fewer[name] = refit_without_term(extended, name)
         without = fewer[name].fit
         if without.evidence > extended.fit.evidence - config.least_gain:
-            neither = refit_without_term(problem, before, name).fit.evidence
+            neither = refit_without_term(before, name).fit.evidence
             share = config.alike_share * (without.evidence - neither)
             if before.fit.evidence - neither > share:
                 return True
     return False
 
 
-def _pruned(problem: Problem, formula: Formula, fewer: Mapping[str, Formula]) -> Formula:
+def _pruned(formula: Formula, fewer: Mapping[str, Formula]) -> Formula:
     """Return the formula without earlier terms or effects that the newest term replaces.
 
     `fewer` has known refits of the formula without a term or effect, by its name.
     """
-    known = dict(fewer)
+    known, config = dict(fewer), formula.problem.config.select
     for name in formula.fit.effects[:-1]:
-        without = known.get(name) or refit_without_term(problem, formula, name)
-        if without.fit.evidence > formula.fit.evidence - problem.config.select.least_gain:
+        without = known.get(name) or refit_without_term(formula, name)
+        if without.fit.evidence > formula.fit.evidence - config.least_gain:
             formula, known = without, {}
     return formula
 
 
-def refit_without_term(problem: Problem, formula: Formula, name: str) -> Formula:
+def refit_without_term(formula: Formula, name: str) -> Formula:
     """Refit a formula without one of its symbolic terms or effects.
 
     Args:
-        problem: The estimation problem.
         formula: The formula.
         name: Name of the term's placeholder effect, or of the effect.
     """
-    found = converge(problem, remove_effect(problem, formula.fit, name))
+    found = converge(formula.problem, remove_effect(formula.problem, formula.fit, name))
     kept = {placeholder: term for placeholder, term in formula.terms.items() if placeholder != name}
     return replace(formula, fit=found, terms=kept)

@@ -7,12 +7,13 @@ import platform
 import shutil
 import subprocess
 import tempfile
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, BoatsimWarning
 
 # Loops over the small matrices of the filter are vectorised and unrolled, as -O3 does, which takes
 # longer to compile for little more speed.
@@ -28,6 +29,34 @@ class NoCompiler(BadInput):
     """Raised where no C compiler can make a library."""
 
 
+class CompilerSwitchedOff(NoCompiler):
+    """Raised where the variable BOATSIM_NATIVE switches the C compiler off."""
+
+
+class SlowCompilationWarning(BoatsimWarning):
+    """Warning that numba compiles a vessel, which takes longer, because no C compiler can."""
+
+
+def warn_of_slow_compilation(error: NoCompiler) -> None:
+    """Warn once in a process that numba compiles vessels, unless this was asked for.
+
+    Args:
+        error: Why no C compiler is used.
+    """
+    if not isinstance(error, CompilerSwitchedOff):
+        _warn_once(" ".join(str(error).split()))
+
+
+@cache
+def _warn_once(reason: str) -> None:
+    warnings.warn(
+        "numba compiles the vessel, which takes longer than a C compiler when it is first used: "
+        f"{reason}; BOATSIM_NATIVE=0 asks for numba without this warning",
+        SlowCompilationWarning,
+        stacklevel=3,
+    )
+
+
 def compiler_path() -> str:
     """Return the path of the C compiler: that of the variable CC, else `cc`.
 
@@ -35,7 +64,7 @@ def compiler_path() -> str:
         NoCompiler: There is none, or the variable BOATSIM_NATIVE switches it off.
     """
     if os.environ.get("BOATSIM_NATIVE", "1") == "0":
-        raise NoCompiler("BOATSIM_NATIVE=0 switches the C compiler off")
+        raise CompilerSwitchedOff("BOATSIM_NATIVE=0 switches the C compiler off")
     found = shutil.which(os.environ.get("CC") or "cc")
     if found is None:
         raise NoCompiler("no C compiler: neither the variable CC nor cc names one")

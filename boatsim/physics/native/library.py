@@ -4,14 +4,15 @@ A C compiler makes the program of a diagnosis in about a tenth of the time that 
 (`python -m benchmarks.native`). Both compute the same numbers to the last bit. There are two
 libraries, `entries.LIBRARIES`, one with which a vessel is simulated and one with which recordings
 are analysed; each is compiled when it is first needed. numba compiles the program where there is no
-C compiler, where a law has no C form, and with `BOATSIM_NATIVE=0`.
+C compiler or it fails, which causes a warning, where a law has no C form, and with
+`BOATSIM_NATIVE=0`.
 """
 
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from boatsim.physics.native.build import NoCompiler, load_library
+from boatsim.physics.native.build import NoCompiler, load_library, warn_of_slow_compilation
 from boatsim.physics.native.calls import NativeFunction, argument_kinds
 from boatsim.physics.native.declarations import NotTranslatable
 from boatsim.physics.native.entries import LIBRARIES, library_functions
@@ -93,7 +94,10 @@ class NativeProgram:
             if called_back or name in library_functions(self.module, library):
                 try:
                     self._load(library)
-                except (NoCompiler, NotTranslatable):
+                except NotTranslatable:
+                    break
+                except NoCompiler as error:
+                    warn_of_slow_compilation(error)
                     break
                 return self.__dict__[name]
         return getattr(self.module, name)

@@ -157,7 +157,11 @@ class ChannelBindings:
     def unit(self, channel: str) -> str:
         """Return the unit of an actuator, a measured signal or a sum of actuators.
 
-        It is "" if no effect uses the channel.
+        Args:
+            channel: Name of the channel.
+
+        Returns:
+            The unit; "" if no effect uses the channel.
         """
         first, *_ = self.signal_sums.get(channel, (channel,))
         for effect in self.effects:
@@ -206,10 +210,11 @@ class ChannelBindings:
     def effect(self, name: str) -> Effect | None:
         """Return the vessel's effect with a given name, or its only effect of the type so named.
 
-        None where there is none or several.
-
         Args:
             name: Name of an effect ("port"), or of a type of effects as in `use` ("thruster").
+
+        Returns:
+            The effect; None where there is none or several.
         """
         for effect in self.effects:
             if effect.name == name:
@@ -226,7 +231,13 @@ class ChannelBindings:
     def effects_of_type(self, idea: str) -> list[Effect]:
         """Return the vessel's effects of a type, and those that can stand for that type.
 
-        An example is a propeller in place of a thruster. The order is that of the vessel.
+        An example is a propeller in place of a thruster.
+
+        Args:
+            idea: Name of the type, as in `use`.
+
+        Returns:
+            The effects in the order of the vessel.
         """
         return [
             e for e in self.effects if type(e).type_name() == idea or hasattr(type(e), f"as_{idea}")
@@ -236,7 +247,12 @@ class ChannelBindings:
     def specified_inputs(effect: Effect) -> Mapping[str, str | float]:
         """Return the channels or constants that an effect's own table assigns to its input signals.
 
-        The keys are the roles of the signals, such as "thrust".
+        Args:
+            effect: An effect.
+
+        Returns:
+            Channel or constant by the role of the signal, such as "thrust"; empty if the table has
+            none.
         """
         if isinstance(effect.on, Mapping):
             return effect.on
@@ -248,6 +264,12 @@ class ChannelBindings:
         An effect whose table has no bindings is bound to the vessel's only channel in each role,
         a command or a measured channel that a law uses. An optional role stays unbound then: a
         fixed thruster does not turn with the only rudder.
+
+        Args:
+            effect: An effect of the vessel.
+
+        Returns:
+            Channel or constant by the role of the signal, such as "thrust".
         """
         bound = dict(self.specified_inputs(effect))
         if bound:
@@ -267,6 +289,12 @@ class ChannelBindings:
         """Return the actuators whose signals a channel effect (such as a rate limit) changes.
 
         They are the named ones, else all actuators with the role on which the effect acts.
+
+        Args:
+            effect: An effect of the vessel.
+
+        Returns:
+            Names of the actuators; empty if the effect is no channel effect.
         """
         if not isinstance(effect, ChannelEffect):
             return ()
@@ -280,8 +308,14 @@ class ChannelBindings:
     def command_for_actuator(self, effect: Effect, actuator: str) -> str | None:
         """Return the name of the raw command that an effect turns into an actuator's signal.
 
-        None if there is no such effect. An example is the PWM command from which a drive curve
-        computes the thrust.
+        An example is the PWM command from which a drive curve computes the thrust.
+
+        Args:
+            effect: An effect of the vessel.
+            actuator: Name of the actuator.
+
+        Returns:
+            Name of the command; None if the effect is not fed by a command for this actuator.
         """
         if not isinstance(effect, ChannelEffect) or actuator not in effect.on:
             return None

@@ -236,6 +236,12 @@ class Vessel(ChannelBindings):
 
         Parameters of effects that a rule computes from these values are computed again.
 
+        Args:
+            changes: Fields with their new values.
+
+        Returns:
+            The changed vessel.
+
         Raises:
             BadInput: If an effect names a channel that does not exist then.
         """
@@ -270,6 +276,12 @@ class Vessel(ChannelBindings):
 
     def without_effect(self, name: str) -> Self:
         """Return a copy of the vessel without the effects that have a given name or type.
+
+        Args:
+            name: Name of an effect, or of a type of effects as in `use`.
+
+        Returns:
+            The changed vessel.
 
         Raises:
             BadInput: If there is no such effect, or another effect needs it.
@@ -314,6 +326,12 @@ class Vessel(ChannelBindings):
     def with_measured(self, values: Mapping[str, float]) -> Self:
         """Return a copy of the vessel with other default values of measured signals, such as wind.
 
+        Args:
+            values: Value [unit of the channel] by the name of the channel.
+
+        Returns:
+            The changed vessel.
+
         Raises:
             BadInput: For a channel that the vessel does not measure.
         """
@@ -330,6 +348,12 @@ class Vessel(ChannelBindings):
 
         The bindings of the effect are not checked. A `CoefficientRelease` is not added: it changes
         the numbers that it names.
+
+        Args:
+            effect: The effect.
+
+        Returns:
+            The changed vessel.
 
         Raises:
             BadInput: If a parameter can not be computed from the vessel's numbers.

@@ -101,9 +101,10 @@ def convert_log(
             converted.
     """
     log = align_clocks(_with_time_of_map(log, map, file), map.begins, file)
-    work = _Work(log, file, map, channels or {}, remarks=list(log.remarks))
-    work.spans = file_spans(log)
-    work.begin = min((span.begin for span in work.spans.values()), default=0.0)
+    spans = file_spans(log)
+    begin = min((span.begin for span in spans.values()), default=0.0)
+    remarks = list(log.remarks)
+    work = _Work(log, file, map, channels or {}, remarks=remarks, begin=begin, spans=spans)
     if map.position:
         _add_position(work, map.position)
     disorder: dict[tuple[int, int, float], list[str]] = {}

@@ -32,6 +32,16 @@ class Worker:
     pipe: Connection
     task: Task
 
+    def start_task(self, task: Task) -> None:
+        """Send a task to the process, unless it has died.
+
+        Args:
+            task: The task.
+        """
+        self.task = task
+        with suppress(OSError):  # If the process has died, `recv` raises next.
+            self.pipe.send(task[1])
+
 
 @dataclass(frozen=True)
 class Processes:
@@ -87,9 +97,7 @@ class Processes:
                             yield number, None
                         continue
                     if task := next_task():
-                        worker.task = task
-                        with suppress(OSError):  # If the process has died, `recv` raises next.
-                            worker.pipe.send(task[1])
+                        worker.start_task(task)
                     else:
                         workers.remove(worker)
                         _stop_worker(worker)
@@ -106,9 +114,9 @@ def _start_worker(work: Work, task: Task) -> Worker:
     with ignored_signals():  # Only the parent process handles signals; the workers end with it.
         process.start()
     other.close()
-    with suppress(OSError):
-        own.send(task[1])
-    return Worker(process, own, task)
+    worker = Worker(process, own, task)
+    worker.start_task(task)
+    return worker
 
 
 def _stop_worker(worker: Worker) -> None:

@@ -1,6 +1,7 @@
 """The C library of a program: the numbers of numba, kept on disk, numba where it cannot be had."""
 
 import stat
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -232,4 +233,21 @@ def test_without_a_compiler_the_program_is_that_of_numba(
     else:
         monkeypatch.setenv("CC", str(refusing if case == "fails" else tmp_path / "none"))
     program = Program(load_vessel("kvlcc2_roll"))
-    assert program.estimation_functions is program.simulation_functions is program.module
+    build._warn_once.cache_clear()
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        assert program.estimation_functions is program.simulation_functions is program.module
+        assert Program(load_vessel("kvlcc2_roll")).simulation_functions is program.module
+    assert len(seen) == (case != "switched off")  # once in a process
+    for warning in seen:
+        assert warning.category is build.SlowCompilationWarning
+        reason = f"{refusing}: no;" if case == "fails" else "neither the variable CC nor cc names"
+        assert reason in str(warning.message)
+
+
+def test_a_library_that_fails_later_is_reported_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = NativeProgram(Program(load_vessel("kvlcc2_roll")).module, "estimation")
+    build._warn_once.cache_clear()
+    monkeypatch.setenv("CC", "no such compiler")
+    with pytest.warns(build.SlowCompilationWarning, match="no C compiler"):
+        assert program.step_in_place is program.module.step_in_place

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.checks.command_range import widen_channel_ranges
+from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.command_unit import check_command_unit
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
 from boatsim.diagnosis.config import DEFAULT
