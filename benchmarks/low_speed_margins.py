@@ -13,7 +13,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from boatsim.control.adaptive import LoopMargins, SampledChannel, loop_margins
+from boatsim.control.adaptive import LoopMargins, SampledLoop, loop_margins
 from boatsim.physics.content import load_class
 
 LAWS = {  # switches of the controller
@@ -26,17 +26,15 @@ GAINS = (0.1, 0.5, 0.7, 1.0, 1.3, 1.6, 2.0, 5.0)
 TIME_CONSTANTS = (0.5, 0.8, 1.67, 2.5, 4.0)  # [s]
 
 
-def control_loop(**switches: float) -> SampledChannel:
+def control_loop(**switches: float) -> SampledLoop:
     """Return the loop of a controller with these switches, on the craft that it assumes."""
     controller: Any = load_class("controller", "l1_heading_discrete")(**switches)
     (found,) = controller.feedback_loops()
-    assert isinstance(found, SampledChannel)
+    assert isinstance(found, SampledLoop)
     return found
 
 
-def margins(
-    of: SampledChannel, gain: float = 1.0, time_constant: float | None = None
-) -> LoopMargins:
+def margins(of: SampledLoop, gain: float = 1.0, time_constant: float | None = None) -> LoopMargins:
     """Return the margins for a craft with another input gain or time constant [s] than assumed."""
     craft = replace(of, damping=1.0 / time_constant) if time_constant else of
     return loop_margins(craft.open_loop_response(gain), high=craft.highest_frequency)

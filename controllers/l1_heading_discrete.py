@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.control.adaptive import Complex, DiscreteFilter, SampledChannel, zero_order_hold
+from boatsim.control.adaptive import Complex, DiscreteFilter, SampledLoop, zero_order_hold
 from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
 from boatsim.physics.base import param
 
@@ -143,16 +143,14 @@ class L1HeadingDiscrete(Controller):
         """Return the estimated disturbance of the yaw motion, an acceleration, for the log."""
         return {"sigma_radps2": Estimate(self._sigma, nan, nan)}
 
-    def feedback_loops(self) -> tuple[SampledChannel, ...]:
+    def feedback_loops(self) -> tuple[SampledLoop, ...]:
         """Return the controller's feedback loop for an analysis of stability margins.
 
         It is broken at the yaw acceleration.
         """
         pole = 1.0 / self.time_constant
         return (
-            SampledChannel(
-                "yaw", self._controller_response, pole, self.period, (0.5, 1.0, 2.0), pole
-            ),
+            SampledLoop("yaw", self._controller_response, pole, self.period, (0.5, 1.0, 2.0), pole),
         )
 
     def _pd_acceleration(self, error: float, r: float) -> float:

@@ -171,7 +171,9 @@ class L1JoystickBlind(AdaptiveJoystick):
         # + L cos d + L)
         reach = self.half_spacing * sin(d) + self.arm * (cos(d) + 1.0)
         self._astern = check.astern
-        self._angle = check.yaw_asymmetry * (self.half_spacing - self.moment_arm(d)) / reach
+        self._angle = (
+            check.yaw_asymmetry * (self.half_spacing - self.arm_per_thrust_difference(d)) / reach
+        )
         self._scale = (
             check.ahead_acceleration
             * self.mass

@@ -522,7 +522,7 @@ class LoopChannel:
 
 
 @dataclass(frozen=True)
-class SampledChannel:
+class SampledLoop:
     """Feedback loop of one axis with a sampled controller, for an exact analysis of its margins.
 
     The plant is x' = -damping x + (input gain) a with a held input; the position is the integral of

@@ -155,7 +155,7 @@ def thrust_difference_for_sway(q: Any, sway: float) -> float:
 
 
 @lean
-def moment_arm(q: Any, angle: float) -> float:
+def arm_per_thrust_difference(q: Any, angle: float) -> float:
     """Return the yaw moment per thrust difference [m] of two outboards turned inward by d.
 
     It is B cos d - L sin d with half spacing B and lever arm L.
@@ -236,7 +236,7 @@ def angle_and_thrust_difference(q: Any, difference: float, moment: float) -> tup
         moment: Yaw moment [N m].
     """
     helps = moment * difference > 0.0
-    needed = moment / moment_arm(q, 0.0 if helps else ANGLE_MAX)
+    needed = moment / arm_per_thrust_difference(q, 0.0 if helps else ANGLE_MAX)
     spread = copysign(max(abs(difference), abs(needed)), difference)
     sine = moment / (spread * hypot(q.half_spacing, q.arm))
     return limit(
@@ -322,7 +322,7 @@ def nominal_wrench(
         angle: Inward angle [rad].
     """
     spread, total = port - starboard, port + starboard
-    return total * cos(angle), spread * sin(angle), spread * moment_arm(q, angle)
+    return total * cos(angle), spread * sin(angle), spread * arm_per_thrust_difference(q, angle)
 
 
 @dataclass
@@ -382,13 +382,13 @@ class Outboards(CheckedParameters):
         """Return the largest sway demand [m/s], which needs the largest thrust difference."""
         return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
-    def moment_arm(self, angle: float) -> float:
+    def arm_per_thrust_difference(self, angle: float) -> float:
         """Return the yaw moment per thrust difference [m] of the outboards at an inward angle.
 
         Args:
             angle: Inward angle of both motors [rad].
         """
-        return moment_arm(self.nominal_properties, angle)
+        return arm_per_thrust_difference(self.nominal_properties, angle)
 
     def neutral_angle(self) -> float:
         """Return the inward angle [rad] at which the outboards give sway without yaw moment."""

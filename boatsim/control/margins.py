@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import degrees
 
-from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition_value, loop_margins
+from boatsim.control.adaptive import LoopChannel, SampledLoop, l1_condition_value, loop_margins
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class, shipped_content_names, snake_case
 
@@ -63,7 +63,7 @@ def stability_margins(controller: object) -> list[Row]:
     return rows
 
 
-def _margin_row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
+def _margin_row(channel: LoopChannel | SampledLoop, gain: float) -> Row:
     norm, found = (
         channel.l1_norm(gain),
         loop_margins(channel.open_loop_response(gain), high=channel.highest_frequency),

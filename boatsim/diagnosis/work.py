@@ -19,7 +19,7 @@ MOST_PARTS = 1e4  # of the time between two rows, so that the count stays finite
 
 
 def integration_count(times: Array, steps: Array) -> float:
-    """Return the number of integration steps between the rows of a recording.
+    """Return the total number of integration steps over all intervals between the rows of a log.
 
     Args:
         times: (N,) times of the rows [s].

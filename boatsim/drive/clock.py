@@ -44,12 +44,12 @@ class Clock(Pace):
         """
         if self.began is None:
             self.began = time.time() - t
-        before = self.delay(t)  # before `wait_until` resets a clock that is far behind
+        before = self.seconds_behind(t)  # before `wait_until` resets a clock that is far behind
         super().wait_until(t, stop)
         if t < self._due - 1e-9:
             return
         self._due += self.period
-        delay = max(before, self.delay(t))
+        delay = max(before, self.seconds_behind(t))
         self.periods += 1
         self.late += delay > LATE * self.period
         self.worst = max(self.worst, delay)

@@ -31,7 +31,7 @@ class Pace:
         self.speed, self._clock, self._sleep = speed, clock, sleep
         self._begin: float | None = None  # real time [s] of the simulated time 0
 
-    def delay(self, t: float) -> float:
+    def seconds_behind(self, t: float) -> float:
         """Return by how much a simulation is behind the clock at the simulated time `t` [s], in s.
 
         The result is 0 before the first wait.
@@ -48,7 +48,7 @@ class Pace:
             stop: Ends the wait when it returns True.
         """
         due = t / self.speed
-        if self._begin is None or self.delay(t) > BEHIND:
+        if self._begin is None or self.seconds_behind(t) > BEHIND:
             self._begin = self._clock() - due
         while (ahead := self._begin + due - self._clock()) > 0.0 and not stop():
             self._sleep(min(ahead, NAP))

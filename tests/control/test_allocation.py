@@ -54,7 +54,7 @@ def test_neutral_angles_of_the_four_boats(
 ) -> None:
     boat = Outboards(half_spacing=half_spacing, arm=arm)
     assert degrees(boat.neutral_angle()) == pytest.approx(published, abs=0.01)
-    assert boat.moment_arm(boat.neutral_angle()) == pytest.approx(0.0, abs=1e-15)
+    assert boat.arm_per_thrust_difference(boat.neutral_angle()) == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("difference", [-0.6, -0.3, 0.0, 0.3, 0.6])
@@ -247,5 +247,7 @@ def test_geometry_outside_its_bounds_is_refused() -> None:
 
 
 def test_lever_runs_from_spacing_to_arm() -> None:
-    assert OURS.moment_arm(0.0) == 0.235
-    assert OURS.moment_arm(ANGLE_MAX) == pytest.approx((0.235 - 0.62) * sin(ANGLE_MAX))
+    assert OURS.arm_per_thrust_difference(0.0) == 0.235
+    assert OURS.arm_per_thrust_difference(ANGLE_MAX) == pytest.approx(
+        (0.235 - 0.62) * sin(ANGLE_MAX)
+    )
