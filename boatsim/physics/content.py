@@ -12,8 +12,9 @@ import re
 import sys
 import traceback
 from functools import cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name_message
@@ -218,6 +219,18 @@ def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
     return tuple(str(case.get("name")) for case in array_of_tables(read_toml(path).get("case")))
 
 
+class _UncachedLoader(SourceFileLoader):
+    """Loader of a user's Python file that always compiles its present text.
+
+    Python takes the bytecode of a file edited within the same second, with the same size, for that
+    of the new text.
+    """
+
+    def get_code(self, fullname: str) -> CodeType:
+        """Return the compiled text of the file."""
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
 def import_module_file(path: Path, name: str) -> ModuleType:
     """Import a Python file as a module of a given name; a module imported before is returned.
 
@@ -230,7 +243,8 @@ def import_module_file(path: Path, name: str) -> ModuleType:
     """
     if name in sys.modules:
         return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
+    loader = _UncachedLoader(name, str(path))
+    spec = importlib.util.spec_from_file_location(name, path, loader=loader)
     if spec is None or spec.loader is None:
         raise BadInput(f"{path}: can not be imported")
     module = importlib.util.module_from_spec(spec)
