@@ -231,6 +231,9 @@ def _unit(problem: Problem, owner: str, key: str) -> str:
 
 def _words_of_parameter(effect: Effect, name: str, count: int) -> str:
     """Words for a number: that of the effect if it has only one, else with axis or name."""
+    kind = type(effect)
+    if kind.kind == "measurement":
+        return kind.params()[name].words
     words = name_in_words(type(effect).type_name()).removesuffix(" error")
     if count == 1 and name not in AXES:
         return words

@@ -67,7 +67,7 @@ class PositionFrameError(Measurement):
         low=-400.0,
         high=400.0,
         unit="m",
-        words="distance of the point ahead of the origin",
+        words="distance of the recorded point ahead of the origin",
         fit=True,
         spread=0.1,
     )
@@ -76,7 +76,7 @@ class PositionFrameError(Measurement):
         low=-400.0,
         high=400.0,
         unit="m",
-        words="distance of the point to starboard",
+        words="distance of the recorded point to starboard",
         fit=True,
         spread=0.05,
     )

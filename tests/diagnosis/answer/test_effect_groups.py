@@ -162,6 +162,7 @@ def test_where_positions_are_recorded_is_a_refined_number_if_the_mass_centre_is_
     text = '[estimated]\n"position_frame_error.forward" = 1.0\n'
     (entry,) = groups_of(text, tmp_path, fitted=fitted).refined
     assert (entry["before"], entry["after"], entry["unit"]) == (0.0, 0.12, "m")
+    assert entry["number"] == "distance of the recorded point ahead of the origin"
     assert [e["name"] for e in groups_of("", tmp_path, fitted=fitted).effects] == [
         "position_frame_error"
     ]
