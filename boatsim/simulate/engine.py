@@ -21,6 +21,9 @@ from boatsim.simulate import native_callback, world
 from boatsim.simulate.stepper import State, Stepper
 from boatsim.simulate.world import Tank
 
+# From version 4 on a Runge-Kutta step of MuJoCo leaves the mean acceleration over the step, before
+# that of its last stage, at the end of the step
+MEAN_ACCELERATION = int(mujoco.__version__.partition(".")[0]) >= 4
 # relative difference allowed between the native callback and the one in Python at start-up
 SAME = 1e-12
 
@@ -136,6 +139,9 @@ class Engine(Stepper):
 
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
+        if MEAN_ACCELERATION and self.data.time > 0.0:
+            with installed_callback(self.callback):
+                mujoco.mj_forward(self.model, self.data)
         J = self.program.jacobian(self._joint_state().tolist())
         moving = [k for k, i in enumerate(self.code.FREE) if i < 3]
         ahead, aside, _ = J[:3, moving] @ (self._sign * self.data.qacc[self._place])[moving]

@@ -142,6 +142,15 @@ def test_accelerometer_feels_the_acceleration_over_ground(tmp_path: Path) -> Non
     assert ay == pytest.approx((after.v - before.v) / 1e-4 + after.r * after.u, abs=1e-3)
 
 
+def test_the_acceleration_is_that_at_the_end_of_a_step_on_every_mujoco(tmp_path: Path) -> None:
+    boat = boats.planar(tmp_path)
+    engine, fine = Engine(boat, step=0.1), Engine(boat, step=1e-4)
+    for one, steps in ((engine, 2), (fine, 2000)):
+        one.reset(START, boats.push(2.0, 0.1))
+        one.advance(steps)
+    assert engine.acceleration() == pytest.approx(fine.acceleration(), rel=2e-3)
+
+
 # Walls
 
 ELASTIC: dict[str, Any] = {

@@ -43,9 +43,9 @@ def test_the_thrust_is_that_of_the_table(tmp_path: Path, count: int) -> None:
 
 
 def test_the_table_of_the_effect_has_its_points() -> None:
-    made = ThrustCurve(points=POINTS)
-    assert effect_table(made)["points"] == POINTS
-    assert ThrustCurve.from_settings({"points": effect_table(made)["points"]}) == made
+    table = effect_table(ThrustCurve(points=POINTS))
+    assert table["points"] == POINTS
+    assert effect_table(ThrustCurve.from_settings({"points": table["points"]})) == table
 
 
 @pytest.mark.parametrize(
