@@ -81,7 +81,8 @@ def test_a_callback_in_python_is_reported_once_with_the_reason(
     with pytest.warns(native_callback.SlowCallbackWarning, match="mjData.qpos not found") as seen:
         Engine(boat)
         Engine(boat)
-    assert len(seen) == 1 and "\n" not in str(seen[0].message)
+    own = [one for one in seen if issubclass(one.category, native_callback.SlowCallbackWarning)]
+    assert len(own) == 1 and "\n" not in str(own[0].message)  # others: files of earlier tests
 
 
 def test_a_native_callback_with_other_numbers_is_reported(
@@ -96,5 +97,5 @@ def test_a_native_callback_with_other_numbers_is_reported(
 def test_a_python_callback_that_was_asked_for_is_not_reported(tmp_path: Path) -> None:
     native_callback.warn_of_slow_callback.cache_clear()
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
+        warnings.simplefilter("error", native_callback.SlowCallbackWarning)
         Engine(boats.planar(tmp_path), callback="python")

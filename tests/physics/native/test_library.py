@@ -238,9 +238,9 @@ def test_without_a_compiler_the_program_is_that_of_numba(
         warnings.simplefilter("always")
         assert program.estimation_functions is program.simulation_functions is program.module
         assert Program(load_vessel("kvlcc2_roll")).simulation_functions is program.module
-    assert len(seen) == (case != "switched off")  # once in a process
-    for warning in seen:
-        assert warning.category is build.SlowCompilationWarning
+    own = [one for one in seen if one.category is build.SlowCompilationWarning]
+    assert len(own) == (case != "switched off")  # once in a process
+    for warning in own:
         reason = f"{refusing}: no;" if case == "fails" else "neither the variable CC nor cc names"
         assert reason in str(warning.message)
 
