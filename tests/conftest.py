@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import runs
 from hypothesis import settings
 
 from boatsim.physics.trust import trust_folders
@@ -30,4 +29,4 @@ def _runs_shared_by_all_processes(tmp_path_factory: pytest.TempPathFactory) -> N
         root = root.parent
     folder = root / "runs"
     folder.mkdir(exist_ok=True)
-    runs.SHARED[:] = [folder]
+    os.environ["BOATSIM_TEST_RUNS"] = str(folder)  # read by runs.py, whose imports take a second

@@ -35,29 +35,22 @@ def raw(name: str) -> dict[str, Any]:
 
 
 Found = tuple[dict[str, Metric], int]
-# Folder of this test run in which its processes share what they found; set by conftest.py
-SHARED: list[Path] = []
 
 
 @cache
 def found(name: str, seed: int = 0) -> Found:
     """Norms of a shipped scenario, and in how many steps the hull touched a wall."""
-    if not SHARED:
-        return _found(name, seed)
-    file = SHARED[0] / f"{name.replace('/', '+')}+{seed}.pickle"
+    # the folder of this test run that its processes share, from conftest.py
+    file = Path(os.environ["BOATSIM_TEST_RUNS"]) / f"{name.replace('/', '+')}+{seed}.pickle"
     if file.exists():
         kept: Found = pickle.loads(file.read_bytes())
         return kept
-    result = _found(name, seed)
+    done = run(scenario.load(name), seed)
+    result = requested_metrics(done), int((done.recording["contacts"] > 0).sum())
     part = file.with_suffix(f".{os.getpid()}")
     part.write_bytes(pickle.dumps(result))
     part.replace(file)
     return result
-
-
-def _found(name: str, seed: int) -> Found:
-    done = run(scenario.load(name), seed)
-    return requested_metrics(done), int((done.recording["contacts"] > 0).sum())
 
 
 def mean(runs: Sequence[dict[str, Metric]]) -> dict[str, float]:

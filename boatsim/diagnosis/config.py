@@ -1790,9 +1790,9 @@ class DecideConfig:
         0.0,
         1.0,
     )
-    refined_spreads: float = setting(
+    largest_refined_addition: float = setting(
         3.0,
-        "1",
+        "sd",
         "Standard deviations, those of the file's estimate and of the fit together, up to which a "
         "load is a better value of an estimated mass; a larger one is missing physics. Of normally "
         "distributed errors 0.3 % are larger.",

@@ -102,7 +102,7 @@ class Particulars:
         mass_centre: Mass centre ahead of the transom [m], None if unknown.
         depth: Depth of the water [m], None for deep water.
         breadth_given: Whether the owner gave the breadth of one hull.
-        mass_sd: Relative standard deviation of the mass; 0 for a weighed boat.
+        mass_uncertainty: Relative standard deviation of the mass; 0 for a weighed boat.
     """
 
     name: str
@@ -117,7 +117,7 @@ class Particulars:
     mass_centre: float | None = None
     depth: float | None = None
     breadth_given: bool = False
-    mass_sd: float = 0.0
+    mass_uncertainty: float = 0.0
 
     @property
     def mass_centre_from_transom(self) -> float:
@@ -248,7 +248,7 @@ def parse_particulars(
         mass_centre=options.balance,
         depth=options.depth,
         breadth_given=options.hull_beam is not None,
-        mass_sd=_parse_mass_uncertainty(options.mass_uncertainty),
+        mass_uncertainty=_parse_mass_uncertainty(options.mass_uncertainty),
     )
 
 

@@ -532,8 +532,8 @@ def _estimated_lines(boat: Particulars) -> Iterator[str]:
     yield toml_line("damping", DAMPING_SD, "", "rules of thumb")
     yield toml_line("thrust", thrust_sd, "", thrust_reason)
     yield toml_line("added_mass", ADDED_MASS_SD, "", "strip theory or regression")
-    if boat.mass_sd > 0.0:
-        yield toml_line('"body.mass"', boat.mass_sd, "", "the owner's mass, not weighed")
+    if boat.mass_uncertainty > 0.0:
+        yield toml_line('"body.mass"', boat.mass_uncertainty, "", "the owner's mass, not weighed")
     yield toml_line('"body.roll_inertia"', INERTIA_SD, "", "usual radius of gyration")
     yield toml_line('"body.yaw_inertia"', INERTIA_SD, "", "usual radius of gyration")
     if boat.mass_centre is None:

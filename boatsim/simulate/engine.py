@@ -139,7 +139,7 @@ class Engine(Stepper):
 
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
-        if MEAN_ACCELERATION and self.data.time > 0.0:
+        if MEAN_ACCELERATION and self.data.qacc.any():  # all zero before the first step
             with installed_callback(self.callback):
                 mujoco.mj_forward(self.model, self.data)
         J = self.program.jacobian(self._joint_state().tolist())

@@ -9,8 +9,8 @@ from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.answer.schema import EffectEntry, PossibleEntry, RefinedEntry
 from boatsim.diagnosis.candidates import FURTHER
 from boatsim.diagnosis.open_set.refinement import (
-    number_without_addition,
     refines_estimated_number,
+    vessel_number,
 )
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
@@ -167,9 +167,9 @@ def _refined_number(problem: Problem, best: Fit, effect: Effect, name: str) -> _
     sd = reported_sd(best, effect, name, problem.config.answer)
     param = type(effect).params()[name]
     words = _words_of_parameter(effect, name, len(_strengths(best, effect)))
-    number = type(effect).adds_to.get(name, "")
-    before = number_without_addition(problem, effect, name)
-    if before is not None:
+    number = type(effect).adds_to.get(name)
+    if number is not None:
+        before = vessel_number(problem, number)
         words = name_in_words(number.split(".")[1])
         return _Number(words, before, before + value, sd, param.unit)
     for change in _changes(problem, effect):

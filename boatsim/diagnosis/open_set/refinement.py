@@ -23,34 +23,24 @@ def refines_estimated_number(problem: Problem, best: Fit, name: str) -> bool:
     return sd is not None and not _exceeds_uncertainty(problem, best, effect, sd)
 
 
-def number_without_addition(problem: Problem, effect: Effect, parameter: str) -> float | None:
-    """Return the number of the vessel file to which a parameter of an effect adds.
+def vessel_number(problem: Problem, number: str) -> float:
+    """Return a number of the vessel file as it was before the diagnosis.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
-        effect: The effect.
-        parameter: Name of the parameter.
-
-    Returns:
-        Value of the number before the diagnosis; None if the parameter adds to none.
+        number: Its owner, an effect or "body", and its name, such as "body.mass".
     """
-    number = type(effect).adds_to.get(parameter)
-    if number is None:
-        return None
     owner, key = number.split(".")
     return float(problem.recordings[0].values[problem.index_of_parameter(owner, key)])
 
 
 def _exceeds_uncertainty(problem: Problem, best: Fit, effect: Effect, sd: float) -> bool:
     """Whether an effect adds more to a number than the uncertainties of number and fit explain."""
-    vessel = problem.program.vessel
+    vessel, most = problem.program.vessel, problem.config.decide.largest_refined_addition
     for parameter, number in type(effect).adds_to.items():
-        before = number_without_addition(problem, effect, parameter)
-        if before is None:
-            continue
         owner, key = number.split(".")
         own = estimated_number_sd(owner, key, vessel, vessel.estimated) or sd
         added, fitted_sd = best.value(effect.name, parameter)
-        if abs(added) > problem.config.decide.refined_spreads * hypot(own * before, fitted_sd):
+        if abs(added) > most * hypot(own * vessel_number(problem, number), fitted_sd):
             return True
     return False
