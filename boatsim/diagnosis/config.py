@@ -1666,6 +1666,15 @@ class SelectConfig:
         0.0,
         1.0,
     )
+    refining_lead: float = setting(
+        0.1,
+        "1",
+        "Share of the evidence of an effect by which another one must be ahead of a better value "
+        "of an estimated number: in a rough model differences of evidence between effects that are "
+        "nearly alike, such as a lag and a delay, are due to its errors of form.",
+        0.0,
+        1.0,
+    )
     most_look_alikes: int = setting(
         3, "count", "Look-alikes that are reported of an identified effect, the best ones.", low=0
     )
@@ -1942,10 +1951,24 @@ class DecideConfig:
         " deviations with 10 % error of the law.",
         low=-inf,
     )
+    held_out_constant: float = setting(
+        0.0,
+        "1",
+        "Weight: log of the odds that the size on held-out recordings is the fitted size, and not "
+        "that of a stand-in.",
+        low=-inf,
+    )
     times_apart: float = setting(
         -0.851,
         "1",
         "Weight: variation of the size between parts in time, as a share of the fitted size.",
+        low=-inf,
+    )
+    times_constant: float = setting(
+        0.0,
+        "1",
+        "Weight: log of the odds that the size is the same in all parts in time, and does not vary "
+        "as that of a stand-in.",
         low=-inf,
     )
     ranges_apart: float = setting(
@@ -1955,11 +1978,24 @@ class DecideConfig:
         "a share of the fitted size.",
         low=-inf,
     )
+    ranges_constant: float = setting(
+        0.0,
+        "1",
+        "Weight: log of the same odds for ranges of a speed, a command or the heading.",
+        low=-inf,
+    )
     unexplained: float = setting(
         -0.274,
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
+        low=-inf,
+    )
+    unexplained_beside_surroundings: float = setting(
+        0.0,
+        "1",
+        "Weight: the same for an effect of the surroundings, in addition: errors in the form of a "
+        "hull's laws hardly imitate a force that keeps its direction over ground.",
         low=-inf,
     )
     structure: float = setting(
@@ -2039,6 +2075,14 @@ class DecideConfig:
     largest_variation: float = setting(
         2.0, "1", "Upper limit of the features `times_apart` and `ranges_apart`."
     )
+    stand_in_variation: float = setting(
+        0.5,
+        "1",
+        "Share of its size by which that of a stand-in varies between parts of the data, in the "
+        "features `held_out_constant`, `times_constant` and `ranges_constant`.",
+        low=1e-6,
+    )
+    largest_constant: float = setting(4.0, "1", "Limit of these features, of either sign.")
     largest_unexplained: float = setting(4.0, "1", "Upper limit of the feature `unexplained`.")
     largest_structure: float = setting(1.0, "1", "Upper limit of the feature `structure`.")
     largest_alternative: float = setting(2.0, "1", "Upper limit of the feature `alternative`.")

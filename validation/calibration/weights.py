@@ -28,6 +28,7 @@ WEIGHT_SD = 0.02
 # of new signs. Cross-validated over two seeds, wider priors gain little more, and less on the seed
 # that the signs were not chosen by
 NEW_WEIGHT_SD = 0.1
+LEAST_FACTOR_SD = 1e-4  # last printed digit of diagnosis.json
 FOLDS = 10  # of the cross-validation, whole trials each
 
 Record = dict[str, Any]
@@ -54,6 +55,7 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
             found = logistic_features(
                 identified(effect),
                 effect["stochastic"],
+                effect["surroundings"],
                 consistency(effect["signs"]),
                 log_signs,
                 DEFAULT.decide,
@@ -74,12 +76,17 @@ def identified(entry: dict[str, Any]) -> IdentifiedEffect:
 def consistency(entry: dict[str, Any]) -> Consistency:
     """Return the signs of an effect from their entry in diagnosis.json."""
     given = dict(entry)
-    given["recordings"] = tuple(Factor(**one) for one in entry["recordings"])
-    given["held_out"] = Factor(**entry["held_out"])
+    given["recordings"] = tuple(map(_factor, entry["recordings"]))
+    given["held_out"] = _factor(entry["held_out"])
     given["axes"] = tuple(entry["axes"])
     for name in ("between_times", "between_ranges"):
         given[name] = Variation(**entry[name])
     return Consistency(**given)
+
+
+def _factor(entry: dict[str, float]) -> Factor:
+    """Factor of an entry, whose sd may be rounded to zero."""
+    return Factor(entry["value"], max(entry["sd"], LEAST_FACTOR_SD))
 
 
 class WeightPrior(NamedTuple):

@@ -99,6 +99,7 @@ class VariationEntry(TypedDict):
     excess: float  # sd between the parts beyond their own sd, as a share of the fitted size
     chi_square: float  # of the hypothesis that the size is the same
     dof: int
+    precision: float  # mean inverse variance of the size on a part, as a share of the fitted size
 
 
 class ConsistencyEntry(TypedDict):
@@ -130,6 +131,8 @@ class EffectSignsEntry(TypedDict):
     name: str
     gain_nats: float
     stochastic: bool
+    surroundings: bool
+    refines: bool
     tied_with: list[str]
     probability: float  # that it, or one of its look-alikes, is a true cause
     signs: ConsistencyEntry

@@ -30,6 +30,8 @@ def cause_statistics_entry(decision: Decision) -> SignsEntry:
                 "name": name_without_prefixes(one.effect.name),
                 "gain_nats": round(one.effect.gain, 2),
                 "stochastic": one.stochastic,
+                "surroundings": one.surroundings,
+                "refines": one.refines,
                 "tied_with": list(map(name_without_prefixes, one.effect.tied_with)),
                 "probability": round(one.probability, 4),
                 "signs": _consistency(one.signs),
@@ -111,4 +113,5 @@ def _variation(variation: Variation) -> VariationEntry:
         "excess": round(variation.excess, 4),
         "chi_square": round(variation.chi_square, 3),
         "dof": variation.dof,
+        "precision": round(variation.precision, 3),
     }

@@ -52,6 +52,7 @@ class Variation:
     excess: float  # sd between the parts beyond their own sd, as a share of the fitted size
     chi_square: float  # of the hypothesis that the size is the same
     dof: int
+    precision: float = 0.0  # mean inverse variance of the size on a part, as a share of the size
 
     @property
     def ratio(self) -> float:
@@ -277,7 +278,7 @@ def _variation(factors: Array, covariance: Array, config: DecideConfig) -> Varia
     weights = 1.0 / variance[known]
     scale = float(weights.sum() - np.sum(weights**2) / weights.sum())
     excess = max(0.0, (chi_square - dof) / scale) if scale > 0.0 else 0.0
-    return Variation(float(np.sqrt(excess)), chi_square, dof)
+    return Variation(float(np.sqrt(excess)), chi_square, dof, scale / dof)
 
 
 def _held_out_factor(

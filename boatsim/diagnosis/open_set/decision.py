@@ -14,7 +14,7 @@ from boatsim.diagnosis.open_set.consistency import Consistency, effect_consisten
 from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, unknown_cause_indicators
 from boatsim.diagnosis.open_set.probability import logistic_features, probability_of_true_cause
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
-from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain, unknown_cause_threshold
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
@@ -28,6 +28,8 @@ class Judgement:
     Attributes:
         effect: The effect with its statistics among the candidates.
         stochastic: Whether it is a stochastic force.
+        surroundings: Whether it acts from the surroundings, as wind and current do.
+        refines: Whether it only refines a number that the vessel file calls estimated.
         signs: Statistics that tell a true cause from a stand-in for another one.
         probability: Probability that it, or one of its look-alikes, is a true cause.
         alone: Errors of free runs over held-out recordings without and with it, by family.
@@ -36,6 +38,8 @@ class Judgement:
 
     effect: IdentifiedEffect
     stochastic: bool
+    surroundings: bool
+    refines: bool
     signs: Consistency
     probability: float
     alone: Mapping[str, Errors]
@@ -92,15 +96,14 @@ def decide(
     judgements = []
     for one in ranking.named:
         own, errors = signs[one.name], alone[one.name]
-        judgements.append(_judge(problem, one, own, of_log, errors))
+        judgements.append(_judge(problem, ranking.best, one, own, of_log, errors))
     named, doubtful = list[IdentifiedEffect](), list[IdentifiedEffect]()
     stands_in = False
     for judged in judgements:
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
-        refines = refines_estimated_number(problem, ranking.best, judged.effect.name)
         probable = judged.probability >= config.decide.least_probability
-        if (probable or refines) and judged.outcome != "unconfirmed":
+        if (probable or judged.refines) and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)
@@ -132,6 +135,7 @@ def decision_without_fit(problem: Problem, ranking: Ranking) -> Decision:
 
 def _judge(
     problem: Problem,
+    best: Fit,
     effect: IdentifiedEffect,
     signs: Consistency,
     of_log: LogSigns,
@@ -141,7 +145,9 @@ def _judge(
     config = problem.config.decide
     candidate = problem.candidates[effect.name]
     stochastic = isinstance(candidate, RandomForce)
-    found = logistic_features(effect, stochastic, signs, of_log, config)
+    surroundings = type(candidate).of_surroundings
+    found = logistic_features(effect, stochastic, surroundings, signs, of_log, config)
     probability = probability_of_true_cause(found, config)
     outcome = confirmation_outcome(candidate, alone, signs, config)
-    return Judgement(effect, stochastic, signs, probability, alone, outcome)
+    refines = refines_estimated_number(problem, best, effect.name)
+    return Judgement(effect, stochastic, surroundings, refines, signs, probability, alone, outcome)

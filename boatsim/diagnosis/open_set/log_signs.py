@@ -8,6 +8,7 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.residual_structure import Structure, find_structure_held_out
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.ranking import Ranking
@@ -26,7 +27,8 @@ class LogSigns:
         structure_gain: Evidence of the largest dependence of the remaining force on motion,
             commands, place or time [nats].
         effects_gain: Evidence that all identified effects gain together [nats].
-        effects: Number of identified effects.
+        effects: Number of identified effects, without those that only refine an estimated number of
+            the vessel file.
         held_out_unexplained: The same share as `unexplained` on held-out recordings, to which no
             parameter was fitted.
         held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
@@ -64,6 +66,7 @@ def unknown_cause_indicators(
     """
     best = ranking.best
     threshold = unknown_cause_threshold(problem.config.select, ranking.explained)
+    missing = [e for e in ranking.named if not refines_estimated_number(problem, best, e.name)]
     remains, structure = _of_held_out(problem, best, held_out)
     return LogSigns(
         _coefficient_shift(best),
@@ -71,7 +74,7 @@ def unknown_cause_indicators(
         float(ranking.left_over / threshold),
         float(ranking.structure.gain),
         float(best.evidence - ranking.recalibrated.evidence),
-        len(ranking.named),
+        len(missing),
         remains / threshold,
         structure.gain,
         structure.significant,

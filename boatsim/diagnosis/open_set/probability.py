@@ -9,7 +9,7 @@ of simulated logs with known causes, among them causes outside the candidates
 from math import exp, hypot, inf, log, log1p
 
 from boatsim.diagnosis.config import DecideConfig
-from boatsim.diagnosis.open_set.consistency import Consistency
+from boatsim.diagnosis.open_set.consistency import Consistency, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 
@@ -17,6 +17,7 @@ from boatsim.diagnosis.search.pruning import IdentifiedEffect
 def logistic_features(
     effect: IdentifiedEffect,
     stochastic: bool,
+    surroundings: bool,
     consistency: Consistency,
     log_signs: LogSigns,
     config: DecideConfig,
@@ -29,6 +30,7 @@ def logistic_features(
     Args:
         effect: The effect with its evidence and its look-alikes.
         stochastic: Whether it is a stochastic force.
+        surroundings: Whether it acts from the surroundings, as wind and current do.
         consistency: Statistics of the effect that tell a true cause from a stand-in.
         log_signs: Statistics of the recordings as a whole.
         config: Settings of the decision.
@@ -39,7 +41,10 @@ def logistic_features(
     held_out = consistency.held_out
     least = config.least_reference_gain
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.size_tolerance)
-    times, ranges = consistency.between_times.excess, consistency.between_ranges.excess
+    times, ranges = consistency.between_times, consistency.between_ranges
+    unexplained = _within(log_signs.unexplained, 0.0, config.largest_unexplained)
+    off_chi_square = (held_out.value - 1.0) ** 2 / held_out.sd**2
+    unseen = Variation(0.0, off_chi_square, 1, held_out.sd**-2)
     alternative = consistency.alternative_gain / max(effect.gain, least)
     structure = log_signs.structure_gain / max(log_signs.effects_gain, least)
     held_out_gain = log(max(consistency.held_out_gain, config.least_held_out_gain))
@@ -50,9 +55,13 @@ def logistic_features(
             held_out.significance, *config.held_out_significance_range
         ),
         "held_out_deviation": _within(off, 0.0, config.largest_held_out_deviation),
-        "times_apart": _within(times, 0.0, config.largest_variation),
-        "ranges_apart": _within(ranges, 0.0, config.largest_variation),
-        "unexplained": _within(log_signs.unexplained, 0.0, config.largest_unexplained),
+        "held_out_constant": _log_odds_of_constant_size(unseen, config),
+        "times_apart": _within(times.excess, 0.0, config.largest_variation),
+        "times_constant": _log_odds_of_constant_size(times, config),
+        "ranges_apart": _within(ranges.excess, 0.0, config.largest_variation),
+        "ranges_constant": _log_odds_of_constant_size(ranges, config),
+        "unexplained": unexplained,
+        "unexplained_beside_surroundings": float(surroundings) * unexplained,
         "structure": _within(structure, 0.0, config.largest_structure),
         "alternative": _within(alternative, 0.0, config.largest_alternative),
         "prior_distance": log1p(consistency.prior_distance),
@@ -79,6 +88,21 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
         odds += getattr(config, name) * value
     most = config.largest_log_odds
     return 1.0 / (1.0 + exp(-_within(odds, -most, most)))
+
+
+def _log_odds_of_constant_size(variation: Variation, config: DecideConfig) -> float:
+    """Limited log odds that the size of an effect is as constant as that of a true one.
+
+    The alternative is a size that varies as that of a stand-in. Where the parts of the data do not
+    determine the size, the odds are even, which a small excess alone does not tell.
+    """
+
+    def log_likelihood(sd: float) -> float:
+        spread = 1.0 + variation.precision * sd**2
+        return -0.5 * (variation.chi_square / spread + variation.dof * log(spread))
+
+    odds = log_likelihood(config.size_tolerance) - log_likelihood(config.stand_in_variation)
+    return _within(odds, -config.largest_constant, config.largest_constant)
 
 
 def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:

@@ -11,6 +11,7 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.budget import SearchBudget, in_addition_to_phrase
+from boatsim.diagnosis.search.estimated_numbers import refining_candidates
 from boatsim.diagnosis.search.evidence import (
     fits_with_evidence_above,
     leading_candidates,
@@ -87,6 +88,9 @@ class CandidateSets:
                 self.random.add(name)
             if isinstance(effect, RandomForce):
                 self.unsteady.add(name)
+        vessel = problem.program.vessel
+        # candidates that only refine an estimated number of the vessel file
+        self.refining = refining_candidates(vessel, candidates, problem.candidates)
         self.required_gain = required_gain(len(candidates), self.config.select)
 
     def add_further_work(self, work: int) -> None:

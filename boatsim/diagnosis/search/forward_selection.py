@@ -1,6 +1,6 @@
 """Forward selection: adds the candidates one by one, each time the one that gains most evidence."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +23,7 @@ END = 0.8
 REMAINS = 0.7
 
 
-def select_forward(sets: CandidateSets, best: Fit) -> Fit:
+def select_forward(sets: CandidateSets, best: Fit, among: Sequence[str] = ()) -> Fit:
     """Add candidate effects to a fit one by one, each time the one that gains most evidence.
 
     The selection ends when no candidate gains enough. Earlier effects that a newer one makes
@@ -32,13 +32,16 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.
         best: Fit from which the selection starts.
+        among: Names of the candidates that may be added; none: all of them.
 
     Returns:
         The converged fit with the selected effects.
     """
     config = sets.config.select
     for _ in range(2 * config.most_effects):  # additions and removals
-        tested = sets.screen_unrefuted(best)
+        tested = sets.screen_unrefuted(best, among)
+        if among:
+            tested = {n: f for n, f in tested.items() if n in among}
         _report(sets, best)
         if not tested or len(best.effects) == config.most_effects:
             break
@@ -48,7 +51,7 @@ def select_forward(sets: CandidateSets, best: Fit) -> Fit:
             tested = laws  # a stochastic force can replace a law, a law hardly replaces it
         slight = config.slight_share * sets.explained_evidence(best)
         if _combined_gain(tested, best) < max(sets.required_gain, slight):
-            further = add_further_effects(sets, best)
+            further = None if among else add_further_effects(sets, best)
             if further is None:
                 break
             best = further

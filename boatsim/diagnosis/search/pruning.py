@@ -113,18 +113,23 @@ def _better_rivals(
     for one in named:
         for rival, found in one.rivals.items():
             fair = one.name in sets.random or rival not in sets.random
-            if fair and found.evidence > best.evidence + _required_lead(sets, one.name, rival):
+            if fair and found.evidence > best.evidence + _required_lead(sets, one, rival):
                 better.append(found)
     return better
 
 
-def _required_lead(sets: CandidateSets, name: str, rival: str) -> float:
+def _required_lead(sets: CandidateSets, one: IdentifiedEffect, rival: str) -> float:
     """Evidence by which a rival must be ahead.
 
-    Whether an effect acts before or after an actuator's lag deviates from the usual order only if
-    the recordings show it.
+    A better value of an estimated number is expected before any missing physics, so that another
+    effect must explain clearly more. Whether an effect acts before or after an actuator's lag
+    deviates from the usual order only if the recordings show it.
     """
-    alike = sets.config.select.alike
+    name, alike = one.name, sets.config.select.alike
+    refines = (name in sets.refining, rival in sets.refining)
+    if refines[0] != refines[1]:
+        lead = max(alike, sets.config.select.refining_lead * one.gain)
+        return lead if refines[0] else -lead
     if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
         return -alike if name.startswith(REORDERED) else alike
     return sets.config.fit.refit_gain

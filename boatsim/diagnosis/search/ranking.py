@@ -16,6 +16,7 @@ from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.energy_balance import dissipative_force_name, oscillating_force_name
+from boatsim.diagnosis.search.estimated_numbers import candidates_for_absent_numbers
 from boatsim.diagnosis.search.evidence import (
     log_evidence_gains,
     unexplained_evidence,
@@ -122,9 +123,11 @@ def select_and_rank_candidates(
     """Select the candidate effects that the recordings require, and rank all candidates.
 
     Candidates are added one by one, each time after the present set has converged, and members are
-    exchanged. An effect is removed if far more remains unexplained than it explains, if free runs
-    over held-out recordings get worse by it, or if it makes these less likely. Held-out recordings
-    decide between look-alikes.
+    exchanged. Effects that supply an estimated number which the vessel model lacks, such as a lag,
+    come first: they are no missing physics, and another effect shall not take their place. An
+    effect is removed if far more remains unexplained than it explains, if free runs over held-out
+    recordings get worse by it, or if it makes these less likely. Held-out recordings decide between
+    look-alikes.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -143,7 +146,11 @@ def select_and_rank_candidates(
     report("fitting the vessel as written")
     nominal, recalibrated = base or fit_baseline(problem)
     sets = CandidateSets(problem, candidates, recalibrated, report, budget)
-    start = refit_from_baseline_noise_levels(sets, begin) if begin else recalibrated
+    start = recalibrated
+    if begin:
+        start = refit_from_baseline_noise_levels(sets, begin)
+    elif absent := candidates_for_absent_numbers(sets.refining, candidates, problem.candidates):
+        start = select_forward(sets, recalibrated, absent)
     best, named = _select(sets, start, held_out)
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
