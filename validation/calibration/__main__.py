@@ -14,6 +14,7 @@ from pathlib import Path
 
 from validation.calibration import campaign, table, weights
 from validation.calibration.curve import reliability_curve
+from validation.calibration.owner_records import owner_records
 
 
 def main() -> None:
@@ -37,6 +38,13 @@ def main() -> None:
     parser.add_argument(
         "--new", nargs="*", default=(), help="with --weights: signs that are new or defined anew"
     )
+    parser.add_argument(
+        "--owners",
+        type=Path,
+        nargs="*",
+        default=(),
+        help="with --weights: also folders of validation.owner_logs (boats from particulars)",
+    )
     parser.add_argument("--curve", type=Path, help="write the reliability curve to this SVG file")
     args = parser.parse_args()
     if not args.tables:
@@ -44,6 +52,8 @@ def main() -> None:
     records = list(campaign.records(args.out))
     table.print_tables(records)
     if args.weights:
+        for folder in args.owners:
+            records += owner_records(folder)
         weights.print_weights(records, args.new)
     if args.curve:
         rows = table.reliability(table.statements(records))

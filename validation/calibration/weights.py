@@ -52,6 +52,8 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
         signs = record["signs"]
         log_signs = LogSigns(**signs["log"])
         for effect in signs["effects"]:
+            if effect["refines"]:  # a better value of an estimated number, and no name
+                continue
             found = logistic_features(
                 identified(effect),
                 effect["stochastic"],

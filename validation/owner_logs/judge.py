@@ -16,6 +16,7 @@ from validation.owner_logs.commands import (
     parse_limits,
     run_boatsim,
 )
+from validation.owner_logs.faults import FAULTS
 from validation.owner_logs.formats.log import WrittenLog
 from validation.owner_logs.owner import correct_lines, correct_map
 
@@ -23,6 +24,8 @@ HORIZON = 8.0  # [s] free runs of the second log, boat of 2 m
 POSITION = re.compile(r"position_rms_m: ([\d.e+-]+)")
 HALF = 0.5  # goal: error relative to the vessel from particulars
 PLAIN_SIGHT = 4.0  # sd of a fix; a smaller error of that vessel leaves nothing to improve
+# every simulated gyro has an offset, and every antenna is off the mass centre
+TRUE_OF_INSTRUMENTS = ("yaw_rate_offset", "position_frame_error")
 LIMITS = {"never_turned": "turn", "saturated": "full|limit|saturat|highest", "one_speed": "speed"}
 
 
@@ -60,6 +63,21 @@ class Result:
     def ratio(self) -> float:
         """Ratio of the errors on the second log."""
         return self.answer_m / self.nominal_m
+
+
+def right_names(cause: str, fault: str) -> set[str]:
+    """Return the names of effects that are true of a case.
+
+    Args:
+        cause: Its physical cause; "" for none.
+        fault: The fault of its log; "" for none.
+    """
+    names = set(TRUE_OF_INSTRUMENTS)
+    if cause:
+        names.update(CAUSES[cause].named)
+    if fault:
+        names.update(FAULTS[fault].named, FAULTS[fault].entries)
+    return names
 
 
 class Judge:
@@ -183,7 +201,7 @@ class Judge:
         r.effects = [
             n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
         ]
-        right = self.right_names()
+        right = right_names(self.case.cause, self.case.fault)
         meant = [{e["name"], *e["tied_with"]} for e in answer["effects"]]
         r.false_names = sum(not names & right for names in meant)
         if self.case.cause:
@@ -199,15 +217,6 @@ class Judge:
             )
             r.called_physics = not identified and r.verdict != "nothing_missing"
         self.foretell(out / "patched.toml")
-
-    def right_names(self) -> set[str]:
-        """Return the names of effects that are the cause or the fault of the case."""
-        names = set[str]()
-        if self.case.cause:
-            names.update(CAUSES[self.case.cause].named)
-        if self.case.wrong:
-            names.update(self.case.wrong.named, self.case.wrong.entries)
-        return names
 
     def foretell(self, patched: Path) -> None:
         """Simulate the second log with both vessels."""
