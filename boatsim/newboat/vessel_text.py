@@ -276,12 +276,28 @@ def _effect_lines(boat: Particulars) -> Iterator[str]:
             yield from _propeller_lines(boat, name, mount, most)
     for name, mount in boat.named_tunnels():
         yield from _tunnel_lines(name, mount)
-    yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"')
-    if boat.tunnels:  # a tunnel thruster has no axis along the flow
-        yield f"on = {toml_value([name for name, _ in boat.named_thrusters()])}"
-    yield _estimate_line("loss", thrust.thrust_loss_with_speed(hull, boat.speed), "s/m")
+    yield from _thrust_loss_lines(boat)
     if boat.rudder is not None:
         yield from _rudder_lines(boat, speed)
+
+
+def _thrust_loss_lines(boat: Particulars) -> Iterator[str]:
+    """Lines of the loss of thrust with speed, once for all thrusters with the same full thrusts."""
+    full, _ = full_thrust(boat)
+    alike: dict[tuple[float, float], list[str]] = {}
+    for (name, mount), most in zip(boat.named_thrusters(), full, strict=True):
+        alike.setdefault((most, mount.largest_astern(most)), []).append(name)
+    for (ahead, astern), names in alike.items():
+        yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"')
+        if len(alike) > 1:
+            yield f"name = {toml_value(f'thrust_loss_{names[0]}')}"
+        # a tunnel thruster has no axis along the flow
+        if boat.tunnels or len(alike) > 1:
+            yield f"on = {toml_value(names)}"
+        yield _estimate_line("loss", thrust.thrust_loss_with_speed(boat.hull, boat.speed), "s/m")
+        rule = "full thrust at rest: the loss grows with the revolutions"
+        yield toml_line("full_ahead", ahead, "N", rule)
+        yield toml_line("full_astern", astern, "N", "the same astern")
 
 
 def _in_depth(boat: Particulars, found: Estimate) -> Estimate:
