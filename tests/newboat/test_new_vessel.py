@@ -23,6 +23,7 @@ from boatsim.physics.base import make_motion
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
+from boatsim.physics.effects.thrust_loss_with_speed import ThrustLossWithSpeed
 from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
 from boatsim.physics.estimate.displacement import hull_particulars
 from boatsim.physics.estimate.shallow_water import shallow_water_factor
@@ -206,6 +207,13 @@ def test_the_thrust_of_revolutions_grows_with_their_square(tmp_path: Path) -> No
         assert wrench.X == pytest.approx(force, rel=2e-3)
     ahead = found.manoeuvring.ahead["n_port_radps"]
     assert 0.0 < ahead <= np.sqrt(0.5) * high * 1.001
+
+
+def test_each_thruster_loses_thrust_by_its_own_full_thrust(tmp_path: Path) -> None:
+    options = "--length 2 --beam 1 --mass 60 --thruster=-0.8,-0.3,90,60 --thruster=-0.8,0.3,40,40"
+    found = vessel.load_vessel(str(made(tmp_path / "boat", options)))
+    losses = [e for e in found.effects if isinstance(e, ThrustLossWithSpeed)]
+    assert [(e.full_ahead, e.full_astern) for e in losses] == [(90.0, 60.0), (40.0, 40.0)]
 
 
 def test_a_tunnel_thruster_pushes_the_bow_to_starboard(tmp_path: Path) -> None:

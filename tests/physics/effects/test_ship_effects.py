@@ -57,6 +57,19 @@ def signals(kind: type[Effect], **given: float) -> Any:
 # ---- laws
 
 
+@pytest.mark.parametrize("revolutions", [-1.0, -0.5, -0.1, 0.1, 0.3, 1.0])
+@pytest.mark.parametrize("u", [-1.0, 0.4, 2.0])
+def test_the_loss_of_a_propeller_grows_with_its_revolutions(revolutions: float, u: float) -> None:
+    """T = a n |n| - b |n| u, of which the first part is the thrust at rest."""
+    ahead, astern, loss = 90.0, 64.0, 0.2
+    full = ahead if revolutions > 0.0 else astern
+    effect = ThrustLossWithSpeed(loss=loss, full_ahead=ahead, full_astern=astern)
+    at_rest = full * revolutions * abs(revolutions)
+    given = signals(Thruster, thrust=at_rest, angle=0.0)
+    found = effect.wrench(make_motion(u=u), given, Thruster().values()).X
+    assert found == pytest.approx(-loss * full * abs(revolutions) * u, rel=0.05)
+
+
 def test_balance_holds_a_speed_in_proportion_to_the_propellers_rate() -> None:
     balance = ApproachBalance(damping=90.0, speed=1.2, shaft_rate=10.0)
     assert balance.wrench(make_motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
