@@ -144,15 +144,16 @@ def sea_for_condition(boat: Vessel, angle: float, height: float, period: float) 
     A = linear_model(boat)[0]
     period = period or 2 * pi / sqrt(-A[4, 3])
     height = height or 0.01 * 9.81 * period**2 / (2 * pi)
-    beam = float(angle == 90)
-    sea = IrregularSea(
-        significant_height=height,
-        modal_period=period,
-        toward=radians(angle),
-        flat=beam,
-        course_kept=1.0,
+    own = boat.effect("irregular_sea")
+    assert isinstance(own, IrregularSea)
+    return own.with_values(
+        {
+            "significant_height": height,
+            "modal_period": period,
+            "toward": radians(angle),
+            "flat": float(angle == 90),
+        }
     )
-    return sea.with_all_parameters(boat)
 
 
 def coefficient_table() -> Table:

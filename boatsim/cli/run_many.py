@@ -17,7 +17,7 @@ from threading import Lock, Thread
 from typing import NamedTuple
 
 from boatsim.cli import comparing, progress
-from boatsim.cli.exits import FAULTS, Exit, one_line, print_error, print_note
+from boatsim.cli.exits import FAULTS, Exit, one_line, print_error, print_lines, print_note
 from boatsim.cli.metric_table import print_metrics
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
@@ -203,7 +203,7 @@ def open_viewer(serve: bool) -> Iterator[str | None]:
 
 
 def run_manoeuvre(scenario: Scenario, folder: Path, command: str) -> int:
-    """Run a standard ship manoeuvre and print its metrics with the IMO limits.
+    """Run a standard ship manoeuvre and print its metrics with the IMO limits and its approach.
 
     A missed limit does not change the exit code: the limits are for large ships.
 
@@ -215,6 +215,7 @@ def run_manoeuvre(scenario: Scenario, folder: Path, command: str) -> int:
     Returns:
         Exit code.
     """
+    from boatsim.simulate.manoeuvre import approach_summary
     from boatsim.simulate.run_files import run_into_folder
     from boatsim.view.run_observers import page_observer, rerun_observers
 
@@ -222,8 +223,11 @@ def run_manoeuvre(scenario: Scenario, folder: Path, command: str) -> int:
     with progress.report_runs(tasks, several=False) as report:
         options = RunOptions(progress=partial(report, 0))
         observers = [*rerun_observers(), page_observer(scenario, command)]
-        content = run_into_folder(folder, scenario, options, observers).to_json()
+        result = run_into_folder(folder, scenario, options, observers)
+    content = result.to_json()
     print_metrics(content, folder)
+    if summary := approach_summary(scenario, result.run.recording):
+        print_lines([summary])
     report_saturation(content)
     if content["complete"]:
         return Exit.MET

@@ -107,13 +107,17 @@ class HelmManoeuvre(Controller):
     """Base class of controllers for standard manoeuvres: an approach ahead, then helm angles.
 
     `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns
-    to starboard). The helm angle is logged as `reference_helm_rad`.
+    to starboard). The approach has the helm `trim`, which keeps the course. The helm angle of the
+    manoeuvre is logged as `reference_helm_rad`; it is 0 during the approach.
     """
 
     angle: float = param(
         0.35, low=-1.6, high=1.6, unit="rad", words="helm angle, positive to starboard"
     )
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the manoeuvre begins")
+    trim: float = param(
+        0.0, low=-1.6, high=1.6, unit="rad", words="helm of the approach, which keeps the course"
+    )
     ahead: dict[str, float] = field(default_factory=dict)
     steer: dict[str, float] = field(default_factory=dict)
     _helm: float = field(default=0.0, init=False)
@@ -125,7 +129,7 @@ class HelmManoeuvre(Controller):
 
     def initial_commands(self) -> dict[str, float]:
         """Return the commands of the approach ahead, which precedes a standard manoeuvre."""
-        return self.commands_at_helm(0.0)
+        return self.commands_at_helm(self.trim)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the commands of a standard manoeuvre for the next period.
@@ -139,8 +143,9 @@ class HelmManoeuvre(Controller):
         if isnan(self._course):
             self._course = sense.psi
         self._helm = 0.0
-        if sense.t >= self.execute - 1e-9:
-            self._helm = self.helm_angle(sense)
+        if sense.t < self.execute - 1e-9:
+            return self.commands_at_helm(self.trim)
+        self._helm = self.helm_angle(sense)
         return self.commands_at_helm(self._helm)
 
     def helm_angle(self, sense: Sense) -> float:

@@ -108,6 +108,8 @@ class Motion(NamedTuple):
     wr: float  # [m/s] heave through the water
     cos_psi: float
     sin_psi: float
+    water_north: float  # [m/s] velocity of the water over ground to north
+    water_east: float  # [m/s] to east
 
 
 class MeasuredMotion(NamedTuple):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.control.base import HelmManoeuvre
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
@@ -19,10 +20,12 @@ from boatsim.physics.content import vessel_reference
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array, motion_signals
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
+from boatsim.recordings.table import Recording
 from boatsim.simulate import imo, scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.cases import ScenarioLocation
 from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.steady_course import SteadyCourse, find_steady_course, steering_commands
 
 ANGLES = {  # manoeuvre -> its usual angle [deg]
     "turning_circle": 35.0,
@@ -98,10 +101,10 @@ def manoeuvre_scenario(
             f"{vessel.name}: no thrust astern; "
             "specify it by [manoeuvring] astern = { CHANNEL = value }"
         )
-    at = approach_speed(vessel, speed)
+    approach = steady_approach(vessel, speed)
     reverses = abs(angle) if heading is None else heading
     place = ScenarioLocation(Path(f"{manoeuvre}.toml"))
-    table = raw | _manoeuvre_tables(manoeuvre, vessel, angle, at, reverses)
+    table = raw | _manoeuvre_tables(manoeuvre, vessel, angle, approach, reverses)
     return scenario.from_table(table, place, loaded)
 
 
@@ -199,7 +202,7 @@ def _check_commands(vessel: Vessel, angle: float) -> None:
     table = vessel.manoeuvring
     cases = {"going ahead": table.ahead, "going astern": table.astern}
     for side in (angle, -angle):
-        cases[f"{side:g} deg of helm"] = _steering_commands(table, radians(side))
+        cases[f"{side:g} deg of helm"] = steering_commands(table, radians(side))
     for case, commands in cases.items():
         for name, value in commands.items():
             channel = vessel.commands[name]
@@ -211,18 +214,10 @@ def _check_commands(vessel: Vessel, angle: float) -> None:
                 )
 
 
-def _steering_commands(table: ManoeuvringTable, helm: float) -> dict[str, float]:
-    """Commands of the steering channels ahead at a helm [rad]."""
-    commands: dict[str, float] = {}
-    for name, per_rad in table.steer.items():
-        commands[name] = table.ahead.get(name, 0.0) + per_rad * helm
-    return commands
-
-
 def _orient_helm_to_starboard(vessel: Vessel) -> ManoeuvringTable:
     """The table with the sign of the helm for which a short run turns to starboard."""
     table = vessel.manoeuvring
-    commands = {**table.ahead, **_steering_commands(table, 0.2)}
+    commands = {**table.ahead, **steering_commands(table, 0.2)}
     heading = _simulate_from_ahead(vessel, _default_speed(vessel), commands, 3.0)[2]
     if heading > 0.0:
         return table
@@ -259,6 +254,62 @@ def approach_speed(vessel: Vessel, speed: float | None = None) -> float:
             "specify its commands by [manoeuvring] ahead"
         )
     return u
+
+
+def steady_approach(vessel: Vessel, speed: float | None = None) -> SteadyCourse:
+    """Return the steady course on which a vessel approaches a manoeuvre.
+
+    A given speed is kept; otherwise the speed is that at which the vessel is steady under its
+    approach commands. The helm is that of calm water, since the force of waves changes. A vessel
+    without a steady course, for example because its helm cannot hold it, approaches straight ahead
+    with the helm midships.
+
+    Args:
+        vessel: The vessel, with a complete [manoeuvring] table.
+        speed: Speed of the approach [m/s]; None for the steady one.
+
+    Raises:
+        BadInput: If the vessel does not move ahead or the given speed is not valid.
+    """
+    expected = approach_speed(vessel, speed)
+    ahead = SteadyCourse({"u": expected}, 0.0)
+    if "surge" not in vessel.dof:
+        return ahead
+    calm = vessel
+    for effect in vessel.effects:
+        if effect.wave_axes():
+            calm = calm.without_effect(effect.name)
+    found = find_steady_course(
+        calm,
+        expected,
+        radians(largest_helm(vessel)),
+        _integration_step(vessel, expected),
+        hold_speed=speed is not None,
+    )
+    if found is None:
+        return ahead
+    return found
+
+
+def approach_summary(scenario: Scenario, log: Recording) -> str:
+    """Return a line with yaw rate and speed at the start of a manoeuvre, and the approach's helm.
+
+    It is empty for a roll decay, which has no approach, and for a run that ended before the start.
+
+    Args:
+        scenario: Scenario of the manoeuvre.
+        log: Log of its run.
+    """
+    controller = scenario.controller
+    if not isinstance(controller, HelmManoeuvre) or log.t[-1] < controller.execute:
+        return ""
+    row = int(np.flatnonzero(log.t <= controller.execute + 1e-9)[-1])  # the last of the approach
+    rate, trim = degrees(log["r_radps"][row]), degrees(controller.trim)
+    return (
+        f"at the start of the manoeuvre, t = {controller.execute:.4g} s: "
+        f"yaw rate {round(rate, 4) + 0.0:.4f} deg/s, speed {log['u_mps'][row]:.4g} m/s; "
+        f"helm of the approach {round(trim, 2) + 0.0:.2f} deg"
+    )
 
 
 def _default_speed(vessel: Vessel) -> float:
@@ -301,9 +352,10 @@ def _round_down(seconds: float) -> float:
 
 
 def _manoeuvre_tables(
-    manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float
+    manoeuvre: str, vessel: Vessel, angle: float, approach: SteadyCourse, reverses: float
 ) -> dict[str, Value]:
-    """Tables of a manoeuvre after an approach at a speed; a zig-zag reverses at a heading [deg]."""
+    """Tables of a manoeuvre after a steady approach; a zig-zag reverses at a heading [deg]."""
+    speed = approach.state["u"]
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _integration_step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
     helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
@@ -320,6 +372,7 @@ def _manoeuvre_tables(
     handling: dict[str, Value] = {
         "period": step,
         "execute": execute,
+        "trim": approach.helm,
         "ahead": table.ahead,
         "steer": table.steer,
     }
@@ -331,7 +384,7 @@ def _manoeuvre_tables(
         "duration": min(duration, 86400.0),
         "step": step,
         "log": _round_down(unit / ROWS),
-        "start": {"u": speed},
+        "start": dict(approach.state),
         "controller": {"use": manoeuvre, **handling, **controller},
         "camera": {"rate": min(max(1.0 / _round_down(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre, **measure},

@@ -26,9 +26,16 @@ from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
+from boatsim.simulate.batch import Batch
 from boatsim.simulate.evaluation import requested_metrics
-from boatsim.simulate.manoeuvre import complete_manoeuvring_table, manoeuvre_scenario
+from boatsim.simulate.manoeuvre import (
+    approach_summary,
+    complete_manoeuvring_table,
+    manoeuvre_scenario,
+    steady_approach,
+)
 from boatsim.simulate.run import run
+from boatsim.simulate.steady_course import steering_commands
 
 LENGTH = 2.0  # [m] of the ships here
 EXECUTE = 10.03  # [s] between two rows of a log
@@ -437,6 +444,65 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
         "steer_port_rad": -1.0,
         "steer_starboard_rad": -1.0,
     }  # to port, so that the bow swings right
+
+
+# Approach
+
+
+def test_a_ship_with_a_bias_begins_her_turning_circle_without_a_yaw_rate() -> None:
+    """The Mariner's propeller turns her; 1.1 deg of port helm hold her course."""
+    found = []
+    for lengths in (2.0, 10.0):
+        made = manoeuvre_scenario("turning_circle", "mariner", angle=-15.0)
+        begin = made.file.step * round(lengths * 160.93 / 7.7175 / made.file.step)
+        made.controller.execute = begin  # type: ignore[attr-defined]
+        done = run(replace(made, measure=TurningCircle(execute=begin, length=160.93)))
+        before = done.recording.between(0.0, begin - 1.0)
+        assert np.abs(np.degrees(before["r_radps"])).max() < 1e-5  # the turn has 0.53 deg/s
+        assert np.ptp(before["u_mps"]) < 1e-5
+        summary = approach_summary(made, done.recording)
+        assert "yaw rate 0.0000 deg/s, speed 7.716 m/s; helm of the approach -1.11" in summary
+        found.append(requested_metrics(done)["advance"].value)
+    assert found[0] == pytest.approx(found[1], rel=1e-3)
+
+
+@pytest.mark.parametrize("manoeuvre", ["zigzag", "pull_out", "spiral"])
+def test_manoeuvres_share_the_trimmed_approach(manoeuvre: str) -> None:
+    controller = manoeuvre_scenario(manoeuvre, "mariner").controller
+    assert degrees(controller.trim) == pytest.approx(-1.108, abs=1e-3)  # type: ignore[attr-defined]
+    assert controller.initial_commands() == {"delta_rad": controller.trim}  # type: ignore[attr-defined]
+
+
+def pushed_otter(**push: float) -> vessel.Vessel:
+    """The Otter with a steady force, such as that of a towed load."""
+    boat = vessel.load_vessel("otter").with_effect({"use": "push", **push})
+    return replace(boat, manoeuvring=complete_manoeuvring_table(boat))
+
+
+def test_a_steady_course_is_where_a_simulation_with_its_helm_stays() -> None:
+    boat = pushed_otter(roll=20.0, yaw=3.0, sway=5.0)
+    found = steady_approach(boat)
+    state = found.state
+    begin = [0.0, 0.0, state["z"], state["phi"], state["theta"], 0.0, *map(state.get, "uvwpqr")]
+    table = boat.manoeuvring
+    batch = Batch(boat, step=0.01)
+    commands = batch.program.command_array({**table.ahead, **steering_commands(table, found.helm)})
+    after = batch.rollout(begin, np.tile(commands, (2000, 1)), 0.01)[-1]
+    assert abs(state["phi"]) > 0.01 and abs(state["v"]) > 0.01 and abs(found.helm) > 0.01
+    assert after[2:] == pytest.approx(begin[2:], abs=1e-6)
+
+
+def test_a_speed_that_is_given_is_kept_and_a_helm_that_is_too_weak_stays_midships() -> None:
+    assert steady_approach(pushed_otter(yaw=3.0), 1.0).state["u"] == pytest.approx(1.0, abs=1e-3)
+    weak = steady_approach(pushed_otter(yaw=500.0))
+    assert weak.helm == 0.0 and list(weak.state) == ["u"]
+
+
+def test_waves_do_not_change_the_helm_of_the_approach() -> None:
+    waves = {"use": "irregular_sea", "significant_height": 0.2, "modal_period": 3.0, "toward": 1.0}
+    boat = vessel.load_vessel("otter").with_effect(waves)
+    found = steady_approach(replace(boat, manoeuvring=complete_manoeuvring_table(boat)))
+    assert found.helm == pytest.approx(0.0, abs=1e-9)
 
 
 # Mistakes

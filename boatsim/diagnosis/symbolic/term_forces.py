@@ -85,6 +85,7 @@ class FittedRecording:
                 self.parameter_values, self.effect_switches
             )
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
+        fields |= {"water_north": np.full(rows, north), "water_east": np.full(rows, east)}
         fields["ur"] = fields["u"] - c * north - s * east
         fields["vr"] = fields["v"] - c * east + s * north
         return Motion(**fields)

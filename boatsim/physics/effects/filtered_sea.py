@@ -87,6 +87,12 @@ class FilteredSea(Force):
         follows="linear_hull.arm?",
     )
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom for which there is an rms force; empty if all are zero."""
+        if self.sway == self.roll == self.yaw == 0.0:
+            return ()
+        return ("sway", "roll", "yaw")
+
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the wave forces whose random realisation follows from the seed.
 

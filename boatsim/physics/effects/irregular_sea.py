@@ -1,16 +1,20 @@
 """Irregular sea: long-crested wind waves that exert coherent forces in sway, yaw and roll."""
 
 from dataclasses import dataclass, replace
-from math import cos, exp, pi, sin, sqrt
+from math import cos, exp, log, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
 from numba import njit
 
+from boatsim.errors import BadInput
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 from boatsim.physics.noise import seeded_realisation, uniform_random
 
 LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
+HIGHEST = 4.0  # default cut over the modal frequency; 0.5 % of the energy lies above
+# Largest share of the energy above the cut: the significant height is then 1 % too low
+MOST_LOST = 0.02
 GRAVITY = particulars.GRAVITY
 
 
@@ -39,12 +43,64 @@ def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
     return 2.0 * (even - taper * square), 2.0 * (odd - taper * cube)
 
 
+@njit(inline="always")
+def beam_attenuation(s: float) -> float:
+    """Return the roll moment of a wave on a section over that of a plane with the wave's slope.
+
+    It is 3 (sin s - s cos s) / s^3: the integral of y sin(2 s y / b) over the breadth b, divided by
+    that of y (2 s y / b).
+
+    Args:
+        s: Wave number across the hull times half the breadth [-].
+    """
+    if abs(s) < 0.05:  # series, because the closed form cancels numerically
+        return 1.0 - s * s / 10.0 + s**4 / 280.0
+    return 3.0 * (sin(s) - s * cos(s)) / s**3
+
+
+@njit(inline="always")
+def frequency_range(q: Any) -> tuple[float, float]:
+    """Return the lowest and the highest frequency of the waves [rad/s].
+
+    Args:
+        q: Parameters of the effect.
+    """
+    modal = 2.0 * pi / q.modal_period
+    if q.cut > 0.0:
+        return LOWEST * modal, max(q.cut, modal)
+    return LOWEST * modal, HIGHEST * modal
+
+
+@njit(inline="always")
+def wave_component(k: int, q: Any) -> tuple[float, float, float]:
+    """Return frequency [rad/s], amplitude [m] and phase [rad] of one wave of the sea.
+
+    Each of the `components` cells of equal width in frequency has one wave, at a random frequency
+    inside the cell and with the energy of the spectrum in it.
+
+    Args:
+        k: Number of the wave, from 0.
+        q: Parameters of the effect.
+    """
+    low, high = frequency_range(q)
+    modal, width = 2.0 * pi / q.modal_period, (high - low) / int(q.components)
+    below = 0.0  # share of the energy below the cell
+    if k > 0:
+        below = exp(-1.25 * (modal / (low + width * k)) ** 4)
+    above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
+    return (
+        low + width * (k + uniform_random(q.realisation, 2 * k)),
+        q.significant_height * sqrt((above - below) / 8.0),
+        2.0 * pi * uniform_random(q.realisation, 2 * k + 1),
+    )
+
+
 @njit
 def law(m: Any, q: Any) -> Wrench:
     """Return the force of an irregular, long-crested sea in sway, yaw and roll.
 
-    It is a sum over wave components. The frequency range is divided into cells with one wave in
-    each, at a random frequency inside the cell and with the energy of the spectrum in it.
+    It is a sum over wave components. The waves travel on the water, which moves with the current:
+    the position along them is that relative to the water, from the origin at t = 0.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -57,8 +113,8 @@ def law(m: Any, q: Any) -> Wrench:
     if q.significant_height == 0.0:
         return wrench()
     ahead, across = cos(q.toward), sin(q.toward)  # direction of the waves in earth axes
-    # [m] distance travelled by the ship along the direction of the waves
-    run = ahead * m.x + across * m.y
+    # [m] distance travelled by the ship through the water along the direction of the waves
+    run = ahead * (m.x - m.water_north * m.t) + across * (m.y - m.water_east * m.t)
     if q.course_kept != 0.0:
         run = ahead * q.speed * m.t
     else:
@@ -66,29 +122,25 @@ def law(m: Any, q: Any) -> Wrench:
             m.cos_psi * ahead + m.sin_psi * across,
             m.cos_psi * across - m.sin_psi * ahead,
         )
-    modal, count = 2.0 * pi / q.modal_period, int(q.components)
-    low = LOWEST * modal
-    width, half = (max(q.cut, modal) - low) / count, 0.5 * q.length
+    half = 0.5 * q.length
     # of water, per length of hull [N]
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
-    below = 0.0
-    for k in range(count):
-        w = low + width * (k + uniform_random(q.realisation, 2 * k))
-        # share of the energy below the cell's upper end
-        above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
+    for k in range(int(q.components)):
+        w, amplitude, phase = wave_component(k, q)
         number = w * w / GRAVITY  # deep water
-        slope = number * q.significant_height * sqrt((above - below) / 8.0)
-        theta = w * m.t - number * run + 2.0 * pi * uniform_random(q.realisation, 2 * k + 1)
+        slope = number * amplitude
+        theta = w * m.t - number * run + phase
         up, turn = slope * sin(theta), slope * cos(theta)
-        K += up
         if q.flat != 0.0:
             Y += up
+            K += up
         else:
             together, apart = wave_slope_integrals(number * ahead * half, q.taper)
             deep = exp(-number * q.centre_depth)
             Y += deep * together * up
             N -= deep * apart * turn
-        below = above
+            sides = beam_attenuation(0.5 * number * across * q.beam)
+            K += exp(-number * q.roll_depth) * sides * up
     Y *= q.sway * across * (q.mass * GRAVITY if q.flat != 0.0 else weight)
     N *= q.yaw * across * weight * half
     return wrench(Y=Y, K=q.roll * across * q.stiffness * K + q.arm * Y, N=N)
@@ -98,35 +150,50 @@ def law(m: Any, q: Any) -> Wrench:
 class IrregularSea(Force):
     """Forces of the slope of unidirectional waves of a Bretschneider spectrum.
 
-    Sway force and yaw moment are integrals of the wave slope over the sections of an ellipsoid; the
-    roll moment is the righting stiffness times the wave slope. With `course_kept` = 1 the ship
-    meets the waves as on her initial course (north) at `speed`, so that `toward` is the angle of
-    encounter: 0 following sea, pi / 2 beam sea, pi head sea. Otherwise her actual heading and
-    position count.
+    Sway force and yaw moment are integrals of the wave slope over the sections of an ellipsoid. The
+    roll moment is the righting stiffness times the wave slope at midship, exp(-k T) times that at
+    the surface, and B(s), the mean over the beam: on a section of breadth b the pressure of the
+    elevation a sin(k |sin gamma_r| y) has the moment rho g a integral y sin(k |sin gamma_r| y) dy,
+    and 3 (sin s - s cos s) / s^3, s = k b |sin gamma_r| / 2, is its ratio to that of a plane with
+    the slope a k |sin gamma_r|. With `flat` = 1 the waves are long compared with the hull, and no
+    force is attenuated.
+
+    The spectrum ends at `cut`, by default at four times the modal frequency; a cut above which more
+    than 2 % of the energy lies is refused. The waves travel on the water, with the current. With
+    `course_kept` = 1 the ship meets the waves as on her initial course (north) at `speed`, so that
+    `toward` is the angle of encounter: 0 following sea, pi / 2 beam sea, pi head sea. Otherwise her
+    actual heading and position count.
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} S(\omega) &= \frac{5}{16} \, H_s^2 \, "
-        r"\frac{\omega_m^4}{\omega^5} \exp\left(-\frac{5}{4} \, "
-        r"\frac{\omega_m^4}{\omega^4}\right) \\ s_i &= k_i \sqrt{2 S(\omega_i) "
-        r"\Delta\omega_i}, \quad \theta_i = \omega_i t - k_i (x \cos\gamma + y "
-        r"\sin\gamma) + \epsilon_i \\ Y &= f_Y \, w \sin\gamma_r \sum_i e^{-k_i h} "
-        r"J_0(\kappa_i) \, s_i \sin\theta_i \\ N &= -f_N \, w \, \frac{L}{2} \sin\gamma_r "
-        r"\sum_i e^{-k_i h} J_1(\kappa_i) \, s_i \cos\theta_i \\ K &= f_K \, m g \, GM "
-        r"\sin\gamma_r \sum_i s_i \sin\theta_i + l \, Y \\ w &= \frac{\pi}{4} \rho g T^2 "
-        r"L, \quad \gamma_r = \gamma - \psi, \quad \kappa_i = \tfrac{1}{2} k_i L "
-        r"\cos\gamma_r \\ J_0(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \cos(\kappa \xi) \, "
-        r"\mathrm{d}\xi \\ J_1(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \, \xi \sin(\kappa "
-        r"\xi) \, \mathrm{d}\xi \end{aligned}"
+        r"\begin{aligned} S(\omega) &= \frac{5}{16} \, H_s^2 \, \frac{\omega_m^4}{\omega^5} "
+        r"\exp\left(-\frac{5}{4} \, \frac{\omega_m^4}{\omega^4}\right), \quad \omega \le \omega_c "
+        r"\\ s_i &= k_i \sqrt{2 S(\omega_i) \Delta\omega_i} "
+        r"\\ \theta_i &= \omega_i t - k_i \left((x - V_N t) \cos\gamma + (y - V_E t) "
+        r"\sin\gamma\right) + \epsilon_i "
+        r"\\ Y &= f_Y \, w \sin\gamma_r \sum_i e^{-k_i h} J_0(\kappa_i) \, s_i \sin\theta_i "
+        r"\\ N &= -f_N \, w \, \frac{L}{2} \sin\gamma_r \sum_i e^{-k_i h} J_1(\kappa_i) \, s_i "
+        r"\cos\theta_i "
+        r"\\ K &= f_K \, m g \, GM \sin\gamma_r \sum_i e^{-k_i h_K} B(\sigma_i) \, s_i "
+        r"\sin\theta_i + l \, Y "
+        r"\\ w &= \frac{\pi}{4} \rho g T^2 L, \quad \gamma_r = \gamma - \psi "
+        r"\\ \kappa_i &= \tfrac{1}{2} k_i L \cos\gamma_r, \quad "
+        r"\sigma_i = \tfrac{1}{2} k_i b \left|\sin\gamma_r\right| "
+        r"\\ J_0(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \cos(\kappa \xi) \, \mathrm{d}\xi "
+        r"\\ J_1(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \, \xi \sin(\kappa \xi) \, \mathrm{d}\xi "
+        r"\\ B(\sigma) &= 3 \, \frac{\sin\sigma - \sigma \cos\sigma}{\sigma^3} \end{aligned}"
     )
     symbols: ClassVar = {
         "significant_height": "H_s",
         "toward": r"\gamma",
+        "cut": r"\omega_c",
         "sway": "f_Y",
         "roll": "f_K",
         "yaw": "f_N",
         "taper": "c",
         "centre_depth": "h",
+        "roll_depth": "h_K",
+        "beam": "b",
         "density": r"\rho",
         "length": "L",
         "draught": "T",
@@ -138,7 +205,6 @@ class IrregularSea(Force):
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
     )
-    tied_to: ClassVar[str] = "the ground, to which the phase of its waves is referred"
     law: ClassVar = law
 
     significant_height: float = param(
@@ -162,7 +228,11 @@ class IrregularSea(Force):
         follows="speed_hold.speed?",
     )
     cut: float = param(
-        3.0, low=0.0, high=100.0, unit="rad/s", words="highest frequency; shorter waves are omitted"
+        0.0,
+        low=0.0,
+        high=200.0,
+        unit="rad/s",
+        words="highest frequency; 0: four times the modal frequency",
     )
     components: float = param(
         160.0, low=1.0, high=2000.0, unit="", words="number of wave components"
@@ -186,6 +256,13 @@ class IrregularSea(Force):
         unit="m",
         words="depth of the centre of buoyancy; default: 0.4 of the draught",
     )
+    roll_depth: float = param(
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="depth at which the slope for the roll moment is taken; default: the draught",
+    )
     density: float = param(
         particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
@@ -196,6 +273,14 @@ class IrregularSea(Force):
         unit="m",
         words="default: that of the vessel",
         follows="vessel.length",
+    )
+    beam: float = param(
+        UNSET,
+        low=0.0,
+        high=100.0,
+        unit="m",
+        words="breadth over which the roll moment is averaged; default: that of the vessel",
+        follows="vessel.beam",
     )
     draught: float = param(
         UNSET,
@@ -225,13 +310,49 @@ class IrregularSea(Force):
         follows="linear_hull.arm?",
     )
 
+    def __post_init__(self) -> None:
+        """Check that the waves up to the cut have nearly all energy of the spectrum.
+
+        Raises:
+            BadInput: More than 2 % of the energy lies above the cut.
+        """
+        super().__post_init__()
+        if self.significant_height == 0.0 or self.cut == 0.0:
+            return
+        modal = 2.0 * pi / self.modal_period
+        lost = 1.0 - exp(-1.25 * (modal / self.cut) ** 4)
+        if lost > MOST_LOST:
+            lowest = modal * (-1.25 / log(1.0 - MOST_LOST)) ** 0.25
+            raise BadInput(
+                f"{self.name}.cut = {self.cut:g} rad/s omits {100.0 * lost:.0f} % of the energy of "
+                f"waves of {self.modal_period:g} s; allowed is at least {lowest:.3g} rad/s, "
+                f"or 0 for {HIGHEST:g} times the modal frequency"
+            )
+
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
-        """Return the default depth of the hull's centre of buoyancy, 0.4 of the draught.
+        """Return the default depths of the sway force and of the roll moment.
 
         Args:
             vessel: Vessel on which the effect acts.
+
+        Returns:
+            `centre_depth`, 0.4 of the draught, and `roll_depth`, the draught [m].
         """
-        return {"centre_depth": 0.4 * self.draught}
+        return {"centre_depth": 0.4 * self.draught, "roll_depth": self.draught}
+
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom in which the sea exerts a force; empty if it is calm.
+
+        Yaw has none in long waves (`flat`), roll none without a righting stiffness or a lever.
+        """
+        if self.significant_height == 0.0:
+            return ()
+        axes = ["sway"]
+        if self.stiffness > 0.0 or self.arm != 0.0:
+            axes.append("roll")
+        if self.flat == 0.0:
+            axes.append("yaw")
+        return tuple(axes)
 
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the irregular sea whose random waves follow from the seed.

@@ -179,6 +179,12 @@ class WaveDrift(FilteredSignal, Force):
         words="time constant of each of two lags; default: 1.5 / sqrt(g / 2 T)",
     )
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom with coefficients; empty if all are zero."""
+        if self.surge == self.sway == self.roll == 0.0:
+            return ()
+        return ("surge", "sway", "roll")
+
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the default time constant of the mean [s], from the natural period of heave.
 

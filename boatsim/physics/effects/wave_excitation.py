@@ -313,6 +313,13 @@ class WaveExcitation(FilteredSignal, Force):
             return 0.0
         return 2.0 / self.bandwidth
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom with coefficients; empty if all are zero."""
+        for name in type(self).symbols:
+            if name.startswith(("sway", "heave", "roll")) and getattr(self, name) != 0.0:
+                return ("sway", "heave", "roll")
+        return ()
+
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the coefficients of the undisturbed wave's pressure, and the bandwidth.
 

@@ -154,6 +154,13 @@ class WaveForcing(RandomForce):
         1.0, low=0.0, high=1e9, unit="", words="number of the realisation; 0: no waves"
     )
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom for which there is an rms force; empty if all are zero."""
+        calm = self.surge == self.sway == self.roll == self.yaw == 0.0
+        if calm or self.realisation == 0.0:
+            return ()
+        return ("surge", "sway", "roll", "yaw")
+
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the wave forces whose random realisation follows from the seed.
 

@@ -137,6 +137,12 @@ class YawRateWaves(RandomForce):
         )
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degree of freedom in which the waves act, yaw; empty if there are none."""
+        if self.rms == 0.0 or self.realisation == 0.0:
+            return ()
+        return ("yaw",)
+
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the wave yaw rate whose random realisation follows from the seed.
 

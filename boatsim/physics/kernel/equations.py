@@ -202,11 +202,13 @@ class EquationWriter:
         """Return the source text of the `Motion` object that is passed to the force laws."""
         through = map(sub, frame.nu[:3], frame.water)
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
+        over_ground = ("north", "east") if {0, 1} & set(self.free) else ("0.0", "0.0")
         values = [
             *map(str, map(self.coordinate_symbol, range(6))),
             *map(str, frame.nu),
             *map(str, through),
             *psi,
+            *over_ground,
         ]
         assert len(values) + 1 == len(Motion._fields)
         return f"Motion(t, {', '.join(values)})"

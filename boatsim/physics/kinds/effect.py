@@ -275,6 +275,13 @@ class Effect(CheckedParameters):
         """
         return {}
 
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom in which the waves of the effect can exert a force.
+
+        It is empty for calm water, and for effects other than waves. The effect has all parameters.
+        """
+        return ()
+
     def has_current_derived_codes(self, vessel: "Boat") -> bool:
         """Return whether the numeric codes derived from a vessel equal those that the effect holds.
 

@@ -37,6 +37,7 @@ from boatsim.physics.vessel.schema import (
     ManoeuvringTable,
     VesselFile,
 )
+from boatsim.physics.vessel.wave_axes import warn_of_unforced_axes
 
 FILE_NAME = "vessel.toml"
 # Fields with the same name and type in `Vessel` and `VesselFile`
@@ -271,7 +272,7 @@ class Vessel(ChannelBindings):
                 does not exist.
         """
         changed = self.with_completed_effect(self._effect_from(effect))
-        check_bindings(changed, self.name)
+        changed.check(self.name)
         return changed
 
     def without_effect(self, name: str) -> Self:
@@ -431,6 +432,8 @@ class Vessel(ChannelBindings):
     def check(self, label: str) -> None:
         """Check the channel bindings of all effects, and that the rigid body suits the free axes.
 
+        Waves that exert no force in some degree of freedom cause a warning.
+
         Args:
             label: Name of the file in messages.
 
@@ -449,6 +452,7 @@ class Vessel(ChannelBindings):
                 f"{label}: body.centre = {self.body.centre}; allowed is a height of 0 where "
                 "pitch is held"
             )
+        warn_of_unforced_axes(self.name, self.dof, self.effects)
 
     # Use
     # ----------------------------------------------------------------------------------------------

@@ -147,6 +147,7 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         values["dead"] *= (
             values["span"] / 2.5
         )  # a drive that is dead over all of its span is refused
+    values.pop("cut", None)  # a sea without most of its energy is refused
     return kind(**values)
 
 

@@ -1,6 +1,7 @@
 """Waves, roll damping, rudder and what holds the speed: each law against a closed form or an
 integral."""
 
+import warnings
 from dataclasses import replace
 from math import cos, degrees, exp, hypot, pi, radians, sin, sqrt
 from typing import Any
@@ -16,7 +17,12 @@ from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Wrench, make_motion
 from boatsim.physics.effects.bilge_keels import BilgeKeels
 from boatsim.physics.effects.filtered_sea import FilteredSea
-from boatsim.physics.effects.irregular_sea import IrregularSea, wave_slope_integrals
+from boatsim.physics.effects.irregular_sea import (
+    IrregularSea,
+    beam_attenuation,
+    wave_component,
+    wave_slope_integrals,
+)
 from boatsim.physics.effects.linear_hull import LinearHull
 from boatsim.physics.effects.push import Push
 from boatsim.physics.effects.roll_damping import RollDamping
@@ -25,16 +31,22 @@ from boatsim.physics.effects.speed_hold import SpeedHold
 from boatsim.physics.effects.wave_forcing import WaveForcing
 from boatsim.physics.effects.yaw_rate_waves import YawRateWaves
 from boatsim.physics.particulars import spheroid_added_mass
+from boatsim.physics.vessel.wave_axes import UnforcedAxesWarning
 from boatsim.recordings.table import Recording
+from boatsim.simulate.batch import Batch
 
 G, RHO = 9.81, 1025.0
 SWAY, ROLL, YAW = (AXES.index(axis) for axis in ("sway", "roll", "yaw"))
 SEEDS = 4000  # the error of an rms over them is 1.1 %
 
 
+# of the thesis: waves up to 3 rad/s, and for the roll moment the slope of the surface
+THESIS = {"cut": 3.0, "roll_depth": 0.0, "beam": 0.0}
+
+
 def sea(**more: float) -> IrregularSea:
-    """A sea on Eastward Ho, condition 1."""
-    return IrregularSea(significant_height=1.0, **more).with_all_parameters(
+    """A sea on Eastward Ho, condition 1, by the formulas of the thesis."""
+    return IrregularSea(significant_height=1.0, **THESIS, **more).with_all_parameters(
         vessel.load_vessel("eastward_ho", ["condition_1"])
     )
 
@@ -100,6 +112,7 @@ def test_accelerations_that_the_thesis_seas_give(
         toward=radians(encounter),
         flat=float(beam),
         course_kept=1.0,
+        **THESIS,
     ).with_all_parameters(boat)
     w, water, body = ensemble(own), boat.effect("added_mass"), boat.body
     direct = w[:, ROLL] - own.arm * w[:, SWAY]
@@ -159,6 +172,122 @@ def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_
     assert any((Y.max(), N.max()) == pytest.approx(f, rel=3e-3) for f in forces)
 
 
+def spectrum(w: float, height: float, period: float) -> float:
+    """Bretschneider's spectrum of the elevation [m^2 s]."""
+    modal = 2 * pi / period
+    return 5 / 16 * height**2 * modal**4 / w**5 * exp(-1.25 * (modal / w) ** 4)
+
+
+def beam_sea_on_the_otter(period: float, **more: float) -> IrregularSea:
+    """A beam sea of 0.3 m on the Otter, as if she had a righting moment of 1000 N m per rad."""
+    own = IrregularSea(
+        significant_height=0.3, modal_period=period, toward=pi / 2, stiffness=1000.0, **more
+    )
+    return own.with_all_parameters(vessel.load_vessel("otter"))
+
+
+SHORT = pytest.mark.parametrize("period", [2.5, 1.5, 1.0])
+
+
+@SHORT
+def test_waves_of_a_short_sea_have_the_significant_height_that_is_stated(period: float) -> None:
+    own = beam_sea_on_the_otter(period)
+    waves = np.array([wave_component(k, own.values()) for k in range(int(own.components))])
+    frequency, amplitude, phase = waves.T
+    assert 0.5 * np.sum(amplitude**2) == pytest.approx(0.3**2 / 16, rel=0.02)
+    assert frequency.max() > 3.9 * 2 * pi / period
+    t = np.arange(0.0, 4000 * period, 0.05 * period)
+    elevation = sum(a * np.cos(w * t + e) for w, a, e in waves)
+    assert np.var(elevation) == pytest.approx(0.3**2 / 16, rel=0.02)
+
+
+@SHORT
+def test_sway_force_of_a_short_sea_is_the_integral_over_the_spectrum(period: float) -> None:
+    own = beam_sea_on_the_otter(period)
+    per_slope = 0.25 * pi * RHO * G * own.draught**2 * own.length * 4 / 3  # of an ellipsoid
+
+    def density(w: float) -> float:
+        force = per_slope * w * w / G * exp(-w * w / G * own.centre_depth)
+        return spectrum(w, 0.3, period) * force**2
+
+    modal = 2 * pi / period
+    whole, to_cut = (sqrt(quad(density, 0.4 * modal, n * modal)[0]) for n in (40.0, 4.0))
+    found = ensemble(own)[:, SWAY].std()
+    assert found == pytest.approx(to_cut, rel=0.03)
+    assert found == pytest.approx(whole, rel=0.08)
+
+
+@SHORT
+def test_roll_moment_converges_when_the_cut_rises(period: float) -> None:
+    modal = 2 * pi / period
+    found = []
+    for cut in (4.0, 8.0, 16.0):
+        own = beam_sea_on_the_otter(period, cut=cut * modal, components=80.0 * cut)
+        found.append(ensemble(own)[:, ROLL].std())
+    assert found == pytest.approx([found[0]] * 3, rel=0.04)
+
+    def density(w: float) -> float:
+        k = w * w / G
+        s = 0.5 * k * own.beam
+        sides = quad(lambda y: y * sin(2 * s * y), -0.5, 0.5)[0] / (s / 6)
+        return spectrum(w, 0.3, period) * (1000.0 * k * exp(-k * own.draught) * sides) ** 2
+
+    assert found[0] == pytest.approx(sqrt(quad(density, 0.4 * modal, 10 * modal)[0]), rel=0.04)
+
+
+@pytest.mark.parametrize("s", [1e-3, 0.049, 0.051, 1.0, 7.0])
+def test_slope_over_the_beam_is_weighted_by_the_lever(s: float) -> None:
+    moment = quad(lambda y: y * sin(s * y), -1.0, 1.0)[0]
+    of_a_plane = quad(lambda y: y * s * y, -1.0, 1.0)[0]
+    assert beam_attenuation(s) == pytest.approx(moment / of_a_plane, rel=1e-8)
+
+
+def test_a_cut_that_loses_energy_is_refused_and_one_of_a_calm_sea_is_not() -> None:
+    refusal = (
+        r"kynoc/vessel.toml: irregular_sea.cut = 3 rad/s omits 26 % of the energy of waves of "
+        r"3 s; allowed is at least 5.87 rad/s, or 0 for 4 times the modal frequency"
+    )
+    short = {"irregular_sea": {"significant_height": 0.3, "modal_period": 3.0}}
+    with pytest.raises(BadInput, match=refusal):
+        vessel.load_vessel("kynoc", settings=short)
+    short["irregular_sea"]["significant_height"] = 0.0
+    vessel.load_vessel("kynoc", settings=short)
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_a_boat_adrift_in_a_current_meets_the_waves_as_one_at_rest_in_still_water(
+    heading: float,
+) -> None:
+    north, east = 0.4, -0.3  # [m/s]
+    waves = sea(toward=1.0)
+    for t in (0.0, 5.0, 600.0):
+        still = waves.wrench(make_motion(t=t, psi=heading, x=1.0, y=2.0))
+        adrift = make_motion(
+            current=(north, east), t=t, psi=heading, x=1.0 + north * t, y=2.0 + east * t
+        )
+        assert waves.wrench(adrift) == pytest.approx(still, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["trial_boat", "otter"])
+def test_a_boat_that_drifts_with_the_water_moves_in_waves_as_in_still_water(name: str) -> None:
+    waves = {"significant_height": 0.1, "modal_period": 1.5, "toward": 2.5}
+    found = []
+    for current in (0.0, 0.5):
+        flow = {"use": "current", "north": current, "east": 0.0}
+        boat = vessel.load_vessel(name).with_effect({"use": "irregular_sea", **waves})
+        boat = boat.with_effect(flow)
+        start = np.zeros(2 * len(boat.dof))
+        heading = len(boat.dof) - 1
+        start[heading] = 0.3
+        start[heading + 1 : heading + 3] = current * cos(0.3), -current * sin(0.3)
+        neutral = np.zeros((1000, len(boat.inputs)))
+        found.append(Batch(boat, step=0.02).rollout(start, neutral, 0.02)[:, : heading + 1])
+    still, adrift = found
+    adrift[:, 0] -= 0.5 * 0.02 * np.arange(len(still))
+    assert adrift == pytest.approx(still, abs=1e-9)
+    assert np.ptp(still[:, 1]) > 1e-3 and np.ptp(still[:, heading]) > 1e-3
+
+
 def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() -> None:
     m, waves = make_motion(t=3.0), sea(toward=1.0)
     assert replace(waves, significant_height=0.0).wrench(m) == Wrench()
@@ -169,9 +298,9 @@ def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() ->
 
 def test_sea_needs_no_particular_vessel() -> None:
     boat = vessel.load_vessel("joystick_boat")
-    small = IrregularSea(
-        significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0
-    ).with_all_parameters(boat)
+    small = IrregularSea(significant_height=0.02, modal_period=1.0, toward=1.0).with_all_parameters(
+        boat
+    )
     assert small.wrench(make_motion(t=1.0)).K == 0.0 and small.wrench(make_motion(t=1.0)).Y != 0.0
 
 
@@ -325,3 +454,36 @@ def test_sea_keeping_is_the_rms_of_three_angles_in_degrees() -> None:
     assert found == pytest.approx(
         {"yaw_rms": degrees(0.1 / sqrt(2)), "roll_rms": degrees(0.2), "rudder_rms": 0.0}
     )
+
+
+# ---- axes in which the waves exert no force
+
+
+@pytest.mark.parametrize(
+    ("name", "effect", "unforced"),
+    [
+        ("otter", {"use": "irregular_sea"}, "surge, heave, roll and pitch"),
+        ("trial_boat", {"use": "irregular_sea"}, "surge"),
+        ("trial_boat", {"use": "irregular_sea", "flat": 1.0}, "surge and yaw"),
+        ("kynoc", {"use": "irregular_sea", "name": "swell"}, "surge"),
+    ],
+)
+def test_waves_that_exert_no_force_in_an_axis_of_the_vessel_give_a_warning(
+    name: str, effect: dict[str, Any], unforced: str
+) -> None:
+    called = effect.get("name", effect["use"])
+    message = f"^{name}: the waves of {called} exert no force in {unforced}$"
+    with pytest.warns(UnforcedAxesWarning, match=message):
+        vessel.load_vessel(name, extra=[{**effect, "significant_height": 0.1, "modal_period": 5.0}])
+    with pytest.warns(UnforcedAxesWarning, match=message):
+        vessel.load_vessel(name).with_effect(
+            {**effect, "significant_height": 0.1, "modal_period": 5.0}
+        )
+
+
+def test_effects_that_together_act_in_all_axes_and_calm_water_give_no_warning() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        boat = vessel.load_vessel("trial_boat").with_effect({"use": "irregular_sea"})
+        boat = boat.with_effect({"use": "wave_forcing", "surge": 0.1})
+        boat.with_parameters({"irregular_sea": {"significant_height": 0.1}})
