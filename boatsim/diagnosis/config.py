@@ -1952,7 +1952,7 @@ class DecideConfig:
         low=-inf,
     )
     held_out_constant: float = setting(
-        0.0,
+        0.333,
         "1",
         "Weight: log of the odds that the size on held-out recordings is the fitted size, and not "
         "that of a stand-in.",
@@ -1965,7 +1965,7 @@ class DecideConfig:
         low=-inf,
     )
     times_constant: float = setting(
-        0.0,
+        0.333,
         "1",
         "Weight: log of the odds that the size is the same in all parts in time, and does not vary "
         "as that of a stand-in.",
@@ -1979,7 +1979,7 @@ class DecideConfig:
         low=-inf,
     )
     ranges_constant: float = setting(
-        0.0,
+        0.333,
         "1",
         "Weight: log of the same odds for ranges of a speed, a command or the heading.",
         low=-inf,
@@ -1989,13 +1989,6 @@ class DecideConfig:
         "1",
         "Weight: evidence that remains unexplained, as a share of the threshold of an unknown "
         "cause.",
-        low=-inf,
-    )
-    unexplained_beside_surroundings: float = setting(
-        0.0,
-        "1",
-        "Weight: the same for an effect of the surroundings, in addition: errors in the form of a "
-        "hull's laws hardly imitate a force that keeps its direction over ground.",
         low=-inf,
     )
     structure: float = setting(

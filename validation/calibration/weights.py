@@ -57,7 +57,6 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
             found = logistic_features(
                 identified(effect),
                 effect["stochastic"],
-                effect["surroundings"],
                 consistency(effect["signs"]),
                 log_signs,
                 DEFAULT.decide,

@@ -131,7 +131,6 @@ class EffectSignsEntry(TypedDict):
     name: str
     gain_nats: float
     stochastic: bool
-    surroundings: bool
     refines: bool
     tied_with: list[str]
     probability: float  # that it, or one of its look-alikes, is a true cause

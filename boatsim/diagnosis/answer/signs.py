@@ -30,7 +30,6 @@ def cause_statistics_entry(decision: Decision) -> SignsEntry:
                 "name": name_without_prefixes(one.effect.name),
                 "gain_nats": round(one.effect.gain, 2),
                 "stochastic": one.stochastic,
-                "surroundings": one.surroundings,
                 "refines": one.refines,
                 "tied_with": list(map(name_without_prefixes, one.effect.tied_with)),
                 "probability": round(one.probability, 4),

@@ -28,7 +28,6 @@ class Judgement:
     Attributes:
         effect: The effect with its statistics among the candidates.
         stochastic: Whether it is a stochastic force.
-        surroundings: Whether it acts from the surroundings, as wind and current do.
         refines: Whether it only refines a number that the vessel file calls estimated.
         signs: Statistics that tell a true cause from a stand-in for another one.
         probability: Probability that it, or one of its look-alikes, is a true cause.
@@ -38,7 +37,6 @@ class Judgement:
 
     effect: IdentifiedEffect
     stochastic: bool
-    surroundings: bool
     refines: bool
     signs: Consistency
     probability: float
@@ -145,9 +143,8 @@ def _judge(
     config = problem.config.decide
     candidate = problem.candidates[effect.name]
     stochastic = isinstance(candidate, RandomForce)
-    surroundings = type(candidate).of_surroundings
-    found = logistic_features(effect, stochastic, surroundings, signs, of_log, config)
+    found = logistic_features(effect, stochastic, signs, of_log, config)
     probability = probability_of_true_cause(found, config)
     outcome = confirmation_outcome(candidate, alone, signs, config)
     refines = refines_estimated_number(problem, best, effect.name)
-    return Judgement(effect, stochastic, surroundings, refines, signs, probability, alone, outcome)
+    return Judgement(effect, stochastic, refines, signs, probability, alone, outcome)

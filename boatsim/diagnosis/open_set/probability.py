@@ -17,7 +17,6 @@ from boatsim.diagnosis.search.pruning import IdentifiedEffect
 def logistic_features(
     effect: IdentifiedEffect,
     stochastic: bool,
-    surroundings: bool,
     consistency: Consistency,
     log_signs: LogSigns,
     config: DecideConfig,
@@ -30,7 +29,6 @@ def logistic_features(
     Args:
         effect: The effect with its evidence and its look-alikes.
         stochastic: Whether it is a stochastic force.
-        surroundings: Whether it acts from the surroundings, as wind and current do.
         consistency: Statistics of the effect that tell a true cause from a stand-in.
         log_signs: Statistics of the recordings as a whole.
         config: Settings of the decision.
@@ -42,7 +40,6 @@ def logistic_features(
     least = config.least_reference_gain
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.size_tolerance)
     times, ranges = consistency.between_times, consistency.between_ranges
-    unexplained = _within(log_signs.unexplained, 0.0, config.largest_unexplained)
     off_chi_square = (held_out.value - 1.0) ** 2 / held_out.sd**2
     unseen = Variation(0.0, off_chi_square, 1, held_out.sd**-2)
     alternative = consistency.alternative_gain / max(effect.gain, least)
@@ -60,8 +57,7 @@ def logistic_features(
         "times_constant": _log_odds_of_constant_size(times, config),
         "ranges_apart": _within(ranges.excess, 0.0, config.largest_variation),
         "ranges_constant": _log_odds_of_constant_size(ranges, config),
-        "unexplained": unexplained,
-        "unexplained_beside_surroundings": float(surroundings) * unexplained,
+        "unexplained": _within(log_signs.unexplained, 0.0, config.largest_unexplained),
         "structure": _within(structure, 0.0, config.largest_structure),
         "alternative": _within(alternative, 0.0, config.largest_alternative),
         "prior_distance": log1p(consistency.prior_distance),

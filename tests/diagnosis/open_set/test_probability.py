@@ -34,7 +34,7 @@ LOG = LogSigns(50.0, 1.0, 50.0, 1e3, 10.0, 1)
 
 
 def features(config: DecideConfig = CONFIG) -> dict[str, float]:
-    return logistic_features(EFFECT, False, False, EXTREME, LOG, config)
+    return logistic_features(EFFECT, False, EXTREME, LOG, config)
 
 
 def test_each_feature_has_a_weight_of_its_name() -> None:
@@ -56,7 +56,7 @@ def test_settings_limit_the_features() -> None:
 
 def constancy(variation: Variation) -> float:
     signs = replace(EXTREME, between_times=variation)
-    return logistic_features(EFFECT, False, False, signs, LOG, CONFIG)["times_constant"]
+    return logistic_features(EFFECT, False, signs, LOG, CONFIG)["times_constant"]
 
 
 def test_a_constant_size_counts_where_the_parts_determine_it() -> None:
@@ -73,7 +73,7 @@ def test_odds_of_a_constant_size_are_those_of_normal_distributions() -> None:
     config = replace(CONFIG, largest_constant=1e6)
     held_out = Factor(1.3, 0.2)
     signs = replace(EXTREME, held_out=held_out)
-    found = logistic_features(EFFECT, False, False, signs, LOG, config)["held_out_constant"]
+    found = logistic_features(EFFECT, False, signs, LOG, config)["held_out_constant"]
 
     def log_density(spread: float) -> float:
         sd = hypot(held_out.sd, spread)
@@ -81,15 +81,6 @@ def test_odds_of_a_constant_size_are_those_of_normal_distributions() -> None:
 
     odds = log_density(config.size_tolerance) - log_density(config.stand_in_variation)
     assert found == pytest.approx(odds)
-
-
-def test_unexplained_force_counts_apart_for_effects_of_the_surroundings() -> None:
-    of_hull, of_water = (
-        logistic_features(EFFECT, False, surroundings, EXTREME, LOG, CONFIG)
-        for surroundings in (False, True)
-    )
-    assert of_hull["unexplained_beside_surroundings"] == 0.0
-    assert of_water["unexplained_beside_surroundings"] == of_water["unexplained"]
 
 
 def test_a_parameter_at_a_bound_counts_if_a_recording_requires_more() -> None:
