@@ -205,7 +205,8 @@ def allocate(
 
     Returns port thrust [N], starboard thrust [N] and inward angle [rad]. Yaw has priority over sway
     and sway over surge. The motors swap direction only where `difference` changes its sign or, if
-    it is zero, where `moment` does; otherwise the result is continuous.
+    it is zero, where `moment` does; otherwise the result is continuous. `largest_difference` limits
+    the thrust difference for sway; a yaw moment may use all that the motors give.
 
     Args:
         q: Nominal outboards.
@@ -215,38 +216,53 @@ def allocate(
         room: Extension of the limit of the surge thrust beyond its share of D [N].
     """
     if difference == 0.0:
-        d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
+        d, share = 0.0, TURN_SHARE
+        spread = moment / q.half_spacing
     else:
-        d, spread = angle_and_thrust_difference(q, difference, moment)
         share = HOLD_SHARE
-    spread = limit(spread, -q.largest_difference, q.largest_difference)
-    port, starboard = split_thrust(q, surge / cos(d), spread, share * abs(spread) + room)
-    return port, starboard, d
+        sway = limit(difference, -q.largest_difference, q.largest_difference)
+        spread = thrust_difference_for_moment(q, sway, moment)
+        d = inward_angle(q, spread, moment)
+    largest = thrust_at_pwm(q, PWM_MAX) - thrust_at_pwm(q, -PWM_MAX)
+    spread = limit(spread, -largest, largest)
+    total, reached = limit_thrusts(q, surge / cos(d), spread, share * abs(spread) + room)
+    if difference != 0.0:
+        d = inward_angle(q, reached, moment)
+    return 0.5 * (total + reached), 0.5 * (total - reached), d
 
 
 @lean
-def angle_and_thrust_difference(q: Any, difference: float, moment: float) -> tuple[float, float]:
-    """Return inward angle [rad] and thrust difference D [N] of two outboards for a sway demand.
+def thrust_difference_for_moment(q: Any, difference: float, moment: float) -> float:
+    """Return the thrust difference D [N] that sway and yaw need together, with the sign of sway.
 
-    D is increased if no angle gives the demanded yaw moment otherwise.
+    D is increased if no inward angle gives the demanded yaw moment otherwise.
 
     Args:
         q: Nominal outboards.
-        difference: Thrust difference for sway [N].
+        difference: Thrust difference for sway [N], not zero.
         moment: Yaw moment [N m].
     """
     helps = moment * difference > 0.0
     needed = moment / arm_per_thrust_difference(q, 0.0 if helps else ANGLE_MAX)
-    spread = copysign(max(abs(difference), abs(needed)), difference)
-    sine = moment / (spread * hypot(q.half_spacing, q.arm))
-    return limit(
-        atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
-    ), spread
+    return copysign(max(abs(difference), abs(needed)), difference)
 
 
 @lean
-def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
-    """Return port and starboard thrust [N] from their sum S and difference D, within limits.
+def inward_angle(q: Any, spread: float, moment: float) -> float:
+    """Return the inward angle [rad] at which two outboards give a yaw moment, within its range.
+
+    Args:
+        q: Nominal outboards.
+        spread: Thrust difference D [N], not zero.
+        moment: Yaw moment [N m].
+    """
+    sine = moment / (spread * hypot(q.half_spacing, q.arm))
+    return limit(atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX)
+
+
+@lean
+def limit_thrusts(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
+    """Return sum S and difference D [N] of the thrusts of two outboards within the motors' limits.
 
     If a motor would exceed its limit, S is reduced to its reserve first, then D.
 
@@ -258,10 +274,12 @@ def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[flo
     """
     ahead, astern = thrust_at_pwm(q, PWM_MAX), -thrust_at_pwm(q, -PWM_MAX)
     total = limit(total, -bound, bound)
-    kept = limit(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+    # the largest D that leaves its own share to a surge force astern is 2 astern / (1 + share)
+    reserve = SURGE_RESERVE * min(abs(spread), 2.0 * astern / (1.0 + SURGE_RESERVE))
+    kept = limit(total, -reserve, reserve)
     spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
     total = limit(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
-    return 0.5 * (total + spread), 0.5 * (total - spread)
+    return total, spread
 
 
 @lean
@@ -348,7 +366,7 @@ class Outboards(CheckedParameters):
         1.0, low=0.5, high=3.0, unit="", words="assumed exponent of thrust over PWM"
     )
     largest_difference: float = param(
-        0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust"
+        0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust for sway"
     )
     rated_sway: float = param(
         0.07, low=0.01, high=1.0, unit="m/s", words="sway command that gets the sway thrust"
