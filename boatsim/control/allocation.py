@@ -12,7 +12,7 @@ nominal; differences to the boat act on a control loop as a disturbance.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin
+from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,8 @@ HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors 
 TURN_SHARE = 0.8  # the same while they only turn the boat
 # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
 SURGE_RESERVE = 0.3
+# [N], [N m] or share of the rated thrust over which derivatives are taken, well above rounding
+SLOPE_STEP = 1e-4
 
 
 class Stick(NamedTuple):
@@ -188,13 +190,24 @@ def pwm_for_thrust(q: Any, thrust: float) -> float:
         q: Nominal outboards.
         thrust: Thrust [N].
     """
+    return np.rint(exact_pwm_for_thrust(q, thrust))
+
+
+@lean
+def exact_pwm_for_thrust(q: Any, thrust: float) -> float:
+    """Return the signed PWM value, not rounded, at which an outboard has a given thrust.
+
+    Args:
+        q: Nominal outboards.
+        thrust: Thrust [N].
+    """
     ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / q.reverse_ratio
     if ahead == 0.0:
         return 0.0
     value = q.dead_pwm + (PWM_RATED - q.dead_pwm) * (ahead / q.rated_thrust) ** (
         1.0 / q.thrust_power
     )
-    return np.rint(copysign(min(value, PWM_MAX), thrust))
+    return copysign(min(value, PWM_MAX), thrust)
 
 
 @lean
@@ -453,6 +466,78 @@ class Outboards(CheckedParameters):
             self.pwm_for_thrust(drive.port),
             self.pwm_for_thrust(drive.starboard),
             round(degrees(drive.angle)),
+        )
+
+    def command_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of each outboard command per unit of demanded force or moment.
+
+        It is the derivative of `allocate` and of the conversion to commands, without rounding.
+
+        Args:
+            axis: "X" for a surge force, "Y" for a sway force, "N" for a yaw moment.
+            swaying: Whether there is a sway demand, so that the steering angles give the moment.
+            commands: Commands about which the derivative is taken, by name of channel.
+
+        Returns:
+            Derivatives by name of channel, per N or per N m.
+        """
+        q, change = self.nominal_properties, self._drive_slopes(axis, swaying, commands)
+        near = SLOPE_STEP * self.rated_thrust
+        slopes = {"steer_port_rad": change.angle, "steer_starboard_rad": -change.angle}
+        for name, by in (("pwm_port", change.port), ("pwm_starboard", change.starboard)):
+            thrust = self.thrust_at_pwm(commands[name])
+            more, less = (exact_pwm_for_thrust(q, thrust + d) for d in (near, -near))
+            slopes[name] = by * (more - less) / (2.0 * near)
+        return slopes
+
+    def wrench_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of the nominal force and moment per unit of a demanded one.
+
+        Args:
+            axis: Axis of the demand, as in `command_slopes`.
+            swaying: Whether there is a sway demand.
+            commands: Commands about which the derivative is taken, by name of channel.
+
+        Returns:
+            Derivatives by axis: "X", "Y" and "N".
+        """
+        port = self.thrust_at_pwm(commands["pwm_port"])
+        starboard = self.thrust_at_pwm(commands["pwm_starboard"])
+        drive = Drive(port, starboard, commands["steer_port_rad"])
+        by = self._drive_slopes(axis, swaying, commands)
+        pushes = []
+        for d in (SLOPE_STEP, -SLOPE_STEP):
+            changed = (x + d * slope for x, slope in zip(drive, by, strict=True))
+            pushes.append(self.nominal_wrench(Drive(*changed)))
+        slopes = {}
+        for name in Push._fields:
+            difference = getattr(pushes[0], name) - getattr(pushes[1], name)
+            slopes[name] = difference / (2.0 * SLOPE_STEP)
+        return slopes
+
+    def _drive_slopes(self, axis: str, swaying: bool, commands: Mapping[str, float]) -> Drive:
+        """Return the change of thrusts and angle per unit of demanded force or moment."""
+        angle, neutral = commands["steer_port_rad"], self.neutral_angle()
+        spread = self.thrust_at_pwm(commands["pwm_port"])
+        spread -= self.thrust_at_pwm(commands["pwm_starboard"])
+        total_change = spread_change = angle_change = 0.0
+        if axis == "X":
+            total_change = 1.0 / cos(angle)
+        elif axis == "Y":
+            spread_change = 1.0 / sin(neutral)
+            # the moment D R sin(gamma - d) stays the same
+            angle_change = spread_change * tan(neutral - angle) / spread
+        elif swaying:
+            lever = hypot(self.half_spacing, self.arm)
+            angle_change = -1.0 / (spread * lever * cos(neutral - angle))
+        else:
+            spread_change = 1.0 / self.half_spacing
+        return Drive(
+            0.5 * (total_change + spread_change), 0.5 * (total_change - spread_change), angle_change
         )
 
     def nominal_wrench(self, drive: Drive) -> Push:
