@@ -429,7 +429,8 @@ def _readings(engine: OpenWater, unmeasured: Sequence[str]) -> Sense:
     s = engine.state
     ahead, starboard = engine.acceleration()
     felt = Sense(s.t, s.psi, s.r, ahead, starboard, s.u, s.v, s.x, s.y, s.phi, s.p)
-    return replace(felt, **dict.fromkeys(unmeasured, nan))
+    missing: dict[str, Any] = dict.fromkeys(unmeasured, nan)
+    return replace(felt, **missing)
 
 
 # Text
