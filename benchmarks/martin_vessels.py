@@ -37,6 +37,17 @@ def mass_matrix(boat: Vessel) -> Array:
     return np.asarray(hull + water.matrix()[np.ix_(at, at)])  # type: ignore[union-attr]
 
 
+def figures() -> dict[str, float]:
+    """Return the rudder area of Eastward Ho over its length squared, by condition of loading."""
+    found = {}
+    for condition in (1, 3):
+        boat = vessel.load_vessel("eastward_ho", [f"condition_{condition}"])
+        rudder = boat.effect("rudder")
+        area = rudder.values()[list(type(rudder).params()).index("area")]
+        found[f"rudder area over length squared, condition {condition}"] = area / boat.length**2
+    return found
+
+
 def speed_of(boat: Vessel) -> float:
     """Return the speed that the vessel holds [m/s]."""
     return float(boat.effect("speed_hold").speed)  # type: ignore[union-attr]

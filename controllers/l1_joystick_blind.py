@@ -8,10 +8,12 @@ from typing import ClassVar
 from boatsim.control.adaptive import LoopChannel
 from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, OutboardSetting
 from boatsim.control.base import Estimate, Sense, clip, wrap
-from boatsim.control.joystick import AdaptiveJoystick
+from boatsim.control.joystick import YAW_PULSE, AdaptiveJoystick
 from boatsim.control.motor_check import PORT, STARBOARD, Drift, MotorCheck, Pulse
+from boatsim.control.operating_points import OperatingPoint
 from boatsim.physics.base import param
 
+LATER = 120.0  # [s] a check of the motors takes up to 40 s before the motion can settle
 TURN_BACK = 0.03  # [rad/s] rate at which the rotation by the check is reversed
 
 
@@ -135,6 +137,70 @@ class L1JoystickBlind(AdaptiveJoystick):
         There is no surge loop, because no measurement closes it.
         """
         return tuple(channel for channel in super().feedback_loops() if channel.name == "yaw")
+
+    def operating_points(self) -> tuple[OperatingPoint, ...]:
+        """Return the steady motions at which the yaw loop is analysed on a vessel.
+
+        The motors are checked first, so that they settle later than those of the base class. Ahead
+        no motion is steady, because the speed is estimated from the thrust alone.
+        """
+        points = []
+        for point in super().operating_points():
+            yaw = tuple(loop for loop in point.loops if loop.measured == "r")
+            if yaw and "surge_mps" not in point.goal:
+                name = point.name.replace(", surge", "")
+                points.append(
+                    replace(
+                        point,
+                        name=name,
+                        loops=yaw,
+                        pulse={"yaw_radps": YAW_PULSE},
+                        unmeasured=("u", "v"),
+                        settle=LATER,
+                    )
+                )
+        return tuple(points)
+
+    def command_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of each corrected command per unit of demanded force or moment.
+
+        Args:
+            axis: "X" for a surge force, "N" for a yaw moment.
+            swaying: Whether there is a sway demand.
+            commands: Corrected commands about which the derivative is taken, by name of channel.
+        """
+        uncorrected = self._uncorrected_commands(commands)
+        slopes = super().command_slopes(axis, swaying, uncorrected)
+        for name, value in uncorrected.items():
+            if not name.startswith("steer") and value < 0.0:
+                slopes[name] *= self._astern
+        return slopes
+
+    def wrench_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of the assumed force and moment per unit of a demanded one.
+
+        Args:
+            axis: "X" for a surge force, "N" for a yaw moment.
+            swaying: Whether there is a sway demand.
+            commands: Corrected commands about which the derivative is taken, by name of channel.
+        """
+        return super().wrench_slopes(axis, swaying, self._uncorrected_commands(commands))
+
+    def _uncorrected_commands(self, commands: Mapping[str, float]) -> dict[str, float]:
+        """Return the commands of the base class that lead to given corrected ones."""
+        found = {}
+        for name, value in commands.items():
+            if name.startswith("steer"):
+                found[name] = value + self._angle
+            elif value < 0.0:
+                found[name] = value / self._astern
+            else:
+                found[name] = value
+        return found
 
     def _make_motor_check(self) -> MotorCheck:
         return MotorCheck(

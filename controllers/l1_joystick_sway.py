@@ -15,8 +15,14 @@ from boatsim.control.allocation import (
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record_type, unlocked
-from boatsim.control.joystick import SERVO_LAG, AdaptiveJoystick, surge_force, yaw_moment
+from boatsim.control.joystick import AdaptiveJoystick, outboard_loop, surge_force, yaw_moment
+from boatsim.control.operating_points import OperatingPoint, sampled_l1_law
 from boatsim.physics.base import param
+
+BRISK = 1.2  # times the rated sway: the thrust difference is about in the middle of its limits
+# [m/s], [rad/s] excite the three loops in sway; large against the rounding of the commands, and
+# small enough that the thrust difference keeps within its limits
+PULSES = {"sway_mps": 0.005, "yaw_radps": 0.01, "surge_mps": 0.005}
 
 
 @merged
@@ -115,11 +121,23 @@ class L1JoystickSway(AdaptiveJoystick):
         }
 
     def feedback_loops(self) -> tuple[LoopChannel, ...]:
-        """Return the yaw, surge and sway feedback loops for an analysis of stability margins."""
-        delayed = partial(
-            LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
-        )
+        """Return the yaw, surge and sway feedback loops on a nominal boat with ideal actuators."""
+        held = partial(LoopChannel, hold_s=0.5 * self.period, input_gain=(0.5, 1.0, 1.8))
         return (
             *super().feedback_loops(),
-            delayed("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth),
+            held("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth),
+        )
+
+    def operating_points(self) -> tuple[OperatingPoint, ...]:
+        """Return the steady motions at which the controller's loops are analysed on a vessel.
+
+        In the last one all three loops are closed: thrust difference and steering angle both change
+        sway force and yaw moment.
+        """
+        law = sampled_l1_law(self.sway_pole, self.sway_mass, self.sway_bandwidth, 0.0, self.period)
+        loops = (outboard_loop(self, "Y", True, law), self.yaw_loop(True), self.surge_loop())
+        goal, pulse = {"sway_mps": BRISK * self.rated_sway}, PULSES
+        return (
+            *super().operating_points(),
+            OperatingPoint("all three in sway", loops, goal, pulse),
         )

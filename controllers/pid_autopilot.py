@@ -18,10 +18,11 @@ from boatsim.control.allocation import (
     write_outboard_commands,
 )
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
+from boatsim.control.joystick import joystick_operating_points, outboard_loop
+from boatsim.control.operating_points import FeedbackLoop, OperatingPoint, sampled_pid_law
 from boatsim.physics.base import param
 
 ROUNDING = 1e-9  # [N m], [N] a smaller difference is rounding and must not stop an integrator
-SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 # Integral parts [N m], [N]; asked for minus applied in the last step [N m], [N].
 REMEMBERS = record_type(
     "acted", "moment_held", "surge_held", "moment_missed", "surge_missed", heading=HEADING
@@ -157,14 +158,27 @@ class PidAutopilot(Outboards, CompiledController):
     )
 
     def feedback_loops(self) -> tuple[LoopChannel, ...]:
-        """Return the heading and speed feedback loops for an analysis of stability margins.
+        """Return the heading and speed feedback loops on a nominal boat with ideal actuators.
 
         PI control of a speed is PD control of its integral.
         """
-        delayed = partial(
-            LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
-        )
+        held = partial(LoopChannel, hold_s=0.5 * self.period, input_gain=(0.5, 1.0, 1.8))
         return (
-            delayed("yaw", pid=(self.kp, self.ki, self.kd)),
-            delayed("surge", pid=(self.surge_ki, 0.0, self.surge_kp)),
+            held("yaw", pid=(self.kp, self.ki, self.kd)),
+            held("surge", pid=(self.surge_ki, 0.0, self.surge_kp)),
         )
+
+    def operating_points(self) -> tuple[OperatingPoint, ...]:
+        """Return the steady motions at which the controller's loops are analysed on a vessel."""
+        law = sampled_pid_law(self.surge_ki, 0.0, self.surge_kp, self.mass, self.period)
+        surge = outboard_loop(self, "X", False, law)
+        return joystick_operating_points(self, self.yaw_loop, surge)
+
+    def yaw_loop(self, swaying: bool) -> FeedbackLoop:
+        """Return the feedback of the yaw rate and of its integral, the heading.
+
+        Args:
+            swaying: Whether the boat sways, so that the steering angles give the moment.
+        """
+        law = sampled_pid_law(self.kp, self.ki, self.kd, self.inertia, self.period)
+        return outboard_loop(self, "N", swaying, law)

@@ -657,15 +657,26 @@ def show(
 @exits_with_code
 def margins(
     controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")],
+    vessel: Annotated[
+        str | None,
+        typer.Option(
+            "--vessel",
+            metavar="NAME|FOLDER|FILE",
+            help="Vessel with whose actuators, lags and delays the delay margins are computed.",
+        ),
+    ] = None,
+    load: Load = None,
     content: Content = None,
+    trust: Trusted = False,
 ) -> None:
-    """Print L1 norm, crossover frequency, phase and delay margin of a controller."""
-    from boatsim.control import margins as control_margins
-    from boatsim.physics.content import load_class
+    """Print L1 norm, crossover frequency, phase and delay margin of a controller.
 
-    with trusted_content(content):
-        made = load_class("controller", controller, named=True)()
-        print(control_margins.format_margins(control_margins.stability_margins(made)))
+    With a vessel, each delay margin follows from the linearised loop and from a simulation.
+    """
+    from boatsim.cli.margins import print_margins
+
+    with trusted_content(content, trust, [vessel]):
+        print_margins(controller, vessel, _split_loads(load))
 
 
 @app.command()

@@ -12,7 +12,7 @@ nominal; differences to the boat act on a control loop as a disturbance.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin
+from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,8 @@ HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors 
 TURN_SHARE = 0.8  # the same while they only turn the boat
 # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
 SURGE_RESERVE = 0.3
+# [N], [N m] or share of the rated thrust over which derivatives are taken, well above rounding
+SLOPE_STEP = 1e-4
 
 
 class Stick(NamedTuple):
@@ -188,13 +190,24 @@ def pwm_for_thrust(q: Any, thrust: float) -> float:
         q: Nominal outboards.
         thrust: Thrust [N].
     """
+    return np.rint(exact_pwm_for_thrust(q, thrust))
+
+
+@lean
+def exact_pwm_for_thrust(q: Any, thrust: float) -> float:
+    """Return the signed PWM value, not rounded, at which an outboard has a given thrust.
+
+    Args:
+        q: Nominal outboards.
+        thrust: Thrust [N].
+    """
     ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / q.reverse_ratio
     if ahead == 0.0:
         return 0.0
     value = q.dead_pwm + (PWM_RATED - q.dead_pwm) * (ahead / q.rated_thrust) ** (
         1.0 / q.thrust_power
     )
-    return np.rint(copysign(min(value, PWM_MAX), thrust))
+    return copysign(min(value, PWM_MAX), thrust)
 
 
 @lean
@@ -205,7 +218,8 @@ def allocate(
 
     Returns port thrust [N], starboard thrust [N] and inward angle [rad]. Yaw has priority over sway
     and sway over surge. The motors swap direction only where `difference` changes its sign or, if
-    it is zero, where `moment` does; otherwise the result is continuous.
+    it is zero, where `moment` does; otherwise the result is continuous. `largest_difference` limits
+    the thrust difference for sway; a yaw moment may use all that the motors give.
 
     Args:
         q: Nominal outboards.
@@ -215,38 +229,53 @@ def allocate(
         room: Extension of the limit of the surge thrust beyond its share of D [N].
     """
     if difference == 0.0:
-        d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
+        d, share = 0.0, TURN_SHARE
+        spread = moment / q.half_spacing
     else:
-        d, spread = angle_and_thrust_difference(q, difference, moment)
         share = HOLD_SHARE
-    spread = limit(spread, -q.largest_difference, q.largest_difference)
-    port, starboard = split_thrust(q, surge / cos(d), spread, share * abs(spread) + room)
-    return port, starboard, d
+        sway = limit(difference, -q.largest_difference, q.largest_difference)
+        spread = thrust_difference_for_moment(q, sway, moment)
+        d = inward_angle(q, spread, moment)
+    largest = thrust_at_pwm(q, PWM_MAX) - thrust_at_pwm(q, -PWM_MAX)
+    spread = limit(spread, -largest, largest)
+    total, reached = limit_thrusts(q, surge / cos(d), spread, share * abs(spread) + room)
+    if difference != 0.0:
+        d = inward_angle(q, reached, moment)
+    return 0.5 * (total + reached), 0.5 * (total - reached), d
 
 
 @lean
-def angle_and_thrust_difference(q: Any, difference: float, moment: float) -> tuple[float, float]:
-    """Return inward angle [rad] and thrust difference D [N] of two outboards for a sway demand.
+def thrust_difference_for_moment(q: Any, difference: float, moment: float) -> float:
+    """Return the thrust difference D [N] that sway and yaw need together, with the sign of sway.
 
-    D is increased if no angle gives the demanded yaw moment otherwise.
+    D is increased if no inward angle gives the demanded yaw moment otherwise.
 
     Args:
         q: Nominal outboards.
-        difference: Thrust difference for sway [N].
+        difference: Thrust difference for sway [N], not zero.
         moment: Yaw moment [N m].
     """
     helps = moment * difference > 0.0
     needed = moment / arm_per_thrust_difference(q, 0.0 if helps else ANGLE_MAX)
-    spread = copysign(max(abs(difference), abs(needed)), difference)
-    sine = moment / (spread * hypot(q.half_spacing, q.arm))
-    return limit(
-        atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
-    ), spread
+    return copysign(max(abs(difference), abs(needed)), difference)
 
 
 @lean
-def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
-    """Return port and starboard thrust [N] from their sum S and difference D, within limits.
+def inward_angle(q: Any, spread: float, moment: float) -> float:
+    """Return the inward angle [rad] at which two outboards give a yaw moment, within its range.
+
+    Args:
+        q: Nominal outboards.
+        spread: Thrust difference D [N], not zero.
+        moment: Yaw moment [N m].
+    """
+    sine = moment / (spread * hypot(q.half_spacing, q.arm))
+    return limit(atan2(q.half_spacing, q.arm) - asin(limit(sine, -1.0, 1.0)), 0.0, ANGLE_MAX)
+
+
+@lean
+def limit_thrusts(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
+    """Return sum S and difference D [N] of the thrusts of two outboards within the motors' limits.
 
     If a motor would exceed its limit, S is reduced to its reserve first, then D.
 
@@ -258,10 +287,12 @@ def split_thrust(q: Any, total: float, spread: float, bound: float) -> tuple[flo
     """
     ahead, astern = thrust_at_pwm(q, PWM_MAX), -thrust_at_pwm(q, -PWM_MAX)
     total = limit(total, -bound, bound)
-    kept = limit(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+    # the largest D that leaves its own share to a surge force astern is 2 astern / (1 + share)
+    reserve = SURGE_RESERVE * min(abs(spread), 2.0 * astern / (1.0 + SURGE_RESERVE))
+    kept = limit(total, -reserve, reserve)
     spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
     total = limit(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
-    return 0.5 * (total + spread), 0.5 * (total - spread)
+    return total, spread
 
 
 @lean
@@ -348,7 +379,7 @@ class Outboards(CheckedParameters):
         1.0, low=0.5, high=3.0, unit="", words="assumed exponent of thrust over PWM"
     )
     largest_difference: float = param(
-        0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust"
+        0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust for sway"
     )
     rated_sway: float = param(
         0.07, low=0.01, high=1.0, unit="m/s", words="sway command that gets the sway thrust"
@@ -435,6 +466,78 @@ class Outboards(CheckedParameters):
             self.pwm_for_thrust(drive.port),
             self.pwm_for_thrust(drive.starboard),
             round(degrees(drive.angle)),
+        )
+
+    def command_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of each outboard command per unit of demanded force or moment.
+
+        It is the derivative of `allocate` and of the conversion to commands, without rounding.
+
+        Args:
+            axis: "X" for a surge force, "Y" for a sway force, "N" for a yaw moment.
+            swaying: Whether there is a sway demand, so that the steering angles give the moment.
+            commands: Commands about which the derivative is taken, by name of channel.
+
+        Returns:
+            Derivatives by name of channel, per N or per N m.
+        """
+        q, change = self.nominal_properties, self._drive_slopes(axis, swaying, commands)
+        near = SLOPE_STEP * self.rated_thrust
+        slopes = {"steer_port_rad": change.angle, "steer_starboard_rad": -change.angle}
+        for name, by in (("pwm_port", change.port), ("pwm_starboard", change.starboard)):
+            thrust = self.thrust_at_pwm(commands[name])
+            more, less = (exact_pwm_for_thrust(q, thrust + d) for d in (near, -near))
+            slopes[name] = by * (more - less) / (2.0 * near)
+        return slopes
+
+    def wrench_slopes(
+        self, axis: str, swaying: bool, commands: Mapping[str, float]
+    ) -> dict[str, float]:
+        """Return the change of the nominal force and moment per unit of a demanded one.
+
+        Args:
+            axis: Axis of the demand, as in `command_slopes`.
+            swaying: Whether there is a sway demand.
+            commands: Commands about which the derivative is taken, by name of channel.
+
+        Returns:
+            Derivatives by axis: "X", "Y" and "N".
+        """
+        port = self.thrust_at_pwm(commands["pwm_port"])
+        starboard = self.thrust_at_pwm(commands["pwm_starboard"])
+        drive = Drive(port, starboard, commands["steer_port_rad"])
+        by = self._drive_slopes(axis, swaying, commands)
+        pushes = []
+        for d in (SLOPE_STEP, -SLOPE_STEP):
+            changed = (x + d * slope for x, slope in zip(drive, by, strict=True))
+            pushes.append(self.nominal_wrench(Drive(*changed)))
+        slopes = {}
+        for name in Push._fields:
+            difference = getattr(pushes[0], name) - getattr(pushes[1], name)
+            slopes[name] = difference / (2.0 * SLOPE_STEP)
+        return slopes
+
+    def _drive_slopes(self, axis: str, swaying: bool, commands: Mapping[str, float]) -> Drive:
+        """Return the change of thrusts and angle per unit of demanded force or moment."""
+        angle, neutral = commands["steer_port_rad"], self.neutral_angle()
+        spread = self.thrust_at_pwm(commands["pwm_port"])
+        spread -= self.thrust_at_pwm(commands["pwm_starboard"])
+        total_change = spread_change = angle_change = 0.0
+        if axis == "X":
+            total_change = 1.0 / cos(angle)
+        elif axis == "Y":
+            spread_change = 1.0 / sin(neutral)
+            # the moment D R sin(gamma - d) stays the same
+            angle_change = spread_change * tan(neutral - angle) / spread
+        elif swaying:
+            lever = hypot(self.half_spacing, self.arm)
+            angle_change = -1.0 / (spread * lever * cos(neutral - angle))
+        else:
+            spread_change = 1.0 / self.half_spacing
+        return Drive(
+            0.5 * (total_change + spread_change), 0.5 * (total_change - spread_change), angle_change
         )
 
     def nominal_wrench(self, drive: Drive) -> Push:

@@ -1,6 +1,6 @@
 """L1 adaptive joystick control of two outboards: base of controllers with different sensors."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import isnan, nan
@@ -19,9 +19,22 @@ from boatsim.control.allocation import (
 from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
+from boatsim.control.operating_points import (
+    FeedbackLoop,
+    OperatingPoint,
+    SampledLaw,
+    sampled_l1_law,
+)
 from boatsim.physics.base import param
 
-SERVO_LAG = 0.06  # [s] lag of steering servos, used only for the margins
+# Steady motions at which the loops are analysed on a vessel, and the pulses that excite them there:
+# large against the rounding of the commands, and small enough that no motor reverses or saturates
+AHEAD = 0.4  # [m/s] a slow speed of the scale boat, Froude number 0.12
+RATED_TURN = 0.1396  # [rad/s] 8 deg/s, the rated turn of the thesis
+SURGE_PULSE = 0.02  # [m/s]
+SWAYING_PULSE = 0.005  # [m/s] of surge in sway, where the allocation leaves little thrust to surge
+YAW_PULSE = 0.01  # [rad/s]
+STEERED_PULSE = 0.02  # [rad/s] in sway, where a step of 1 deg of the servos is 7 mN m
 # X [N], N [N m]: values applied in the last period
 REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
 
@@ -158,18 +171,78 @@ class AdaptiveJoystick(Outboards, CompiledController):
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def feedback_loops(self) -> tuple[LoopChannel, ...]:
-        """Return the controller's yaw and surge feedback loops, for stability margins.
+        """Return the controller's yaw and surge feedback loops on a nominal boat.
 
-        The true thrust over inertia is 0.5 to 1.8 times the assumed one.
+        The true thrust over inertia is 0.5 to 1.8 times the assumed one. Actuators are ideal.
         """
-        delayed = partial(
-            LoopChannel,
-            pole=self.pole,
-            hold_s=0.5 * self.period,
-            servo_lag_s=SERVO_LAG,
-            input_gain=(0.5, 1.0, 1.8),
+        held = partial(
+            LoopChannel, pole=self.pole, hold_s=0.5 * self.period, input_gain=(0.5, 1.0, 1.8)
         )
         return (
-            delayed("yaw", bandwidth=self.yaw_bandwidth, heading_gain=self.heading_gain),
-            delayed("surge", bandwidth=self.surge_bandwidth),
+            held("yaw", bandwidth=self.yaw_bandwidth, heading_gain=self.heading_gain),
+            held("surge", bandwidth=self.surge_bandwidth),
         )
+
+    def operating_points(self) -> tuple[OperatingPoint, ...]:
+        """Return the steady motions at which the controller's loops are analysed on a vessel."""
+        return joystick_operating_points(self, self.yaw_loop, self.surge_loop())
+
+    def yaw_loop(self, swaying: bool) -> FeedbackLoop:
+        """Return the feedback of the yaw rate.
+
+        Args:
+            swaying: Whether the boat sways, so that the steering angles give the moment.
+        """
+        law = sampled_l1_law(
+            self.pole, self.inertia, self.yaw_bandwidth, self.heading_gain, self.period
+        )
+        return outboard_loop(self, "N", swaying, law)
+
+    def surge_loop(self) -> FeedbackLoop:
+        """Return the feedback of the surge speed."""
+        law = sampled_l1_law(self.pole, self.mass, self.surge_bandwidth, 0.0, self.period)
+        return outboard_loop(self, "X", False, law)
+
+
+def outboard_loop(outboards: Outboards, axis: str, swaying: bool, law: SampledLaw) -> FeedbackLoop:
+    """Return the feedback of the velocity along one axis to a force or moment of two outboards.
+
+    Args:
+        outboards: The controller with its allocation.
+        axis: "X", "Y" or "N".
+        swaying: Whether the boat sways, so that the steering angles give the moment.
+        law: The control law.
+    """
+    return FeedbackLoop(
+        {"X": "u", "Y": "v", "N": "r"}[axis],
+        axis,
+        law,
+        partial(outboards.command_slopes, axis, swaying),
+        partial(outboards.wrench_slopes, axis, swaying),
+    )
+
+
+def joystick_operating_points(
+    outboards: Outboards, yaw_loop: Callable[[bool], FeedbackLoop], surge_loop: FeedbackLoop
+) -> tuple[OperatingPoint, ...]:
+    """Return the steady motions at which the loops of a joystick controller are analysed.
+
+    Straight ahead, surge and yaw do not influence each other. In a turn the surge speed is not
+    measured, so that the margin is that of the yaw loop alone. In sway both loops are closed;
+    without the surge loop the boat would drift ahead until the steering is at its limit.
+
+    Args:
+        outboards: The controller.
+        yaw_loop: Returns the yaw loop with or without a sway demand.
+        surge_loop: The surge loop.
+    """
+    ahead, turn = {"surge_mps": AHEAD}, {"yaw_radps": RATED_TURN}
+    sway = {"sway_mps": outboards.rated_sway}
+    pulse, blind = {"yaw_radps": YAW_PULSE}, ("u", "v")
+    steered = {"yaw_radps": STEERED_PULSE, "surge_mps": SWAYING_PULSE}
+    return (
+        OperatingPoint("surge", (surge_loop,), ahead, {"surge_mps": SURGE_PULSE}, ("v",)),
+        OperatingPoint("yaw ahead", (yaw_loop(False),), ahead, pulse, blind),
+        OperatingPoint("yaw in a turn", (yaw_loop(False),), turn, pulse, blind),
+        OperatingPoint("yaw, surge in sway", (yaw_loop(True), surge_loop), sway, steered, ("v",)),
+    )

@@ -292,7 +292,17 @@ def test_list_has_a_line_about_everything(kind: str) -> None:
 def test_margins_prints_the_l1_norm_of_the_yaw_channel() -> None:
     result = boatsim("margins", "l1_joystick")
     assert result.exit_code == 0 and "0.616" in result.stdout
+    assert "nominal boat with ideal actuators" in result.stdout and "--vessel" in result.stdout
     assert "did you mean 'l1_joystick'" in boatsim("margins", "l1_joystik").stderr
+    assert "--load needs --vessel" in boatsim("margins", "l1_joystick", "--load", "wide").stderr
+
+
+@pytest.mark.slow
+def test_margins_on_a_vessel_are_analytic_and_simulated() -> None:
+    result = boatsim("margins", "l1_joystick", "--vessel", "joystick_boat", "--load", "wide")
+    assert result.exit_code == 0 and "0.616" in result.stdout
+    turn = [line for line in result.stdout.splitlines() if line.startswith("yaw in a turn")]
+    assert turn[0].split()[-4] == "0.156" and abs(float(turn[0].split()[-2])) < 5.0
 
 
 def test_version() -> None:

@@ -115,6 +115,63 @@ def test_a_turn_at_the_limits_keeps_a_reserve_for_surge() -> None:
     assert 0.6 * hard.N < back.N < hard.N
 
 
+def largest_moment_of_the_motors(surge: float, low: float, high: float) -> tuple[float, float]:
+    """Brute force over the limits of both motors and servos: least and largest yaw moment [N m].
+
+    Each port thrust in steps of a quarter PWM and each angle from `low` to `high` in steps of a
+    quarter degree is combined with the starboard thrust that leaves the surge force `surge`; the
+    port motor pushes ahead of the starboard one.
+    """
+    ahead, astern = OURS.thrust_at_pwm(PWM_MAX), -OURS.thrust_at_pwm(-PWM_MAX)
+    port = np.array([OURS.thrust_at_pwm(0.25 * i) for i in range(-1020, 1021)])
+    moments = []
+    for angle in np.radians(np.arange(degrees(low), degrees(high) + 0.01, 0.25)):
+        starboard = surge / cos(angle) - port
+        possible = (starboard >= -astern) & (starboard <= ahead) & (port >= starboard)
+        spread = port[possible] - starboard[possible]
+        moments.append(spread * OURS.arm_per_thrust_difference(angle))
+    every = np.concatenate(moments)
+    return float(every.min()), float(every.max())
+
+
+@pytest.mark.parametrize("surge", [-0.25, -0.1, 0.0, 0.1, 0.25])
+def test_a_turn_on_the_spot_may_use_all_that_the_motors_give(surge: float) -> None:
+    """The nominal motors give 0.268 N m without surge force: twice the thrust astern."""
+    _, largest = largest_moment_of_the_motors(surge, 0.0, 0.0)
+    if surge == 0.0:
+        assert largest == pytest.approx(2 * 0.5695 * 0.235, rel=2e-3)
+    for turn in (1.0, -1.0):
+        push = OURS.nominal_wrench(OURS.allocate(surge, 0.0, 5.0 * turn, room=0.3))
+        assert push.N == pytest.approx(turn * largest, rel=2e-3)
+        assert (push.X, push.Y) == pytest.approx((surge, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("surge", [-0.15, 0.0, 0.15])
+@pytest.mark.parametrize("difference", [0.05, 0.6, -0.6])
+def test_a_turn_during_sway_may_use_all_that_the_motors_give(
+    surge: float, difference: float
+) -> None:
+    least, largest = largest_moment_of_the_motors(surge, 0.0, ANGLE_MAX)
+    side = 1.0 if difference > 0.0 else -1.0
+    for asked, possible in ((5.0, largest), (-5.0, least)):
+        push = OURS.nominal_wrench(OURS.allocate(surge, difference, side * asked, room=0.3))
+        assert push.N == pytest.approx(side * possible, rel=2e-3)
+        assert push.X == pytest.approx(surge, abs=1e-12)
+
+
+def test_every_moment_that_the_motors_can_give_during_sway_is_given() -> None:
+    weak = Outboards(rated_thrust=0.35)  # the motors limit the sway thrust, not its own limit
+    lever = hypot(weak.half_spacing, weak.arm)
+    spread = -2.0 * weak.thrust_at_pwm(-PWM_MAX)
+    for moment in (-0.2, -0.1, 0.05, 0.15, 0.185):
+        drive = weak.allocate(0.0, 0.9, moment)
+        assert drive.port - drive.starboard == pytest.approx(spread)
+        assert drive.angle == pytest.approx(
+            weak.neutral_angle() - asin(moment / (spread * lever)), abs=1e-12
+        )
+        assert weak.nominal_wrench(drive).N == pytest.approx(moment, abs=1e-12)
+
+
 DEMANDS = {
     "surge": st.floats(-3, 3),
     "difference": st.floats(-1, 1),
@@ -141,7 +198,6 @@ def test_no_demand_exceeds_the_motors_or_the_servos(
     ahead, astern = 0.5 * 255 / 150, 0.67 * 0.5 * 255 / 150
     for thrust in drive[:2]:
         assert -astern - 1e-12 <= thrust <= ahead + 1e-12
-    assert abs(drive.port - drive.starboard) <= 0.9 + 1e-12
     setting = OURS.commands_for_thrusts(drive)
     assert max(abs(setting.pwm_port), abs(setting.pwm_starboard)) <= PWM_MAX
     assert 0 <= setting.degrees <= 45
