@@ -1784,6 +1784,9 @@ class DecideConfig:
     logs were being chosen. The two weights of a stochastic force were fitted again to about 650
     logs of the seeds 4 to 6, and that of `alternative` to the 306 logs with a cause among the first
     419 of seed 9 and the first 210 of seed 10, when this sign was related to the axes of an effect.
+    The three weights of a constant size are equal, because these odds come from the same data. Of
+    0, 0.2, 1/3 and 1/2 the middle ones had the smallest log loss over 24 logs of seed 12 and 18
+    logs of `validation.owner_logs` (seeds 101 and 102), with the other weights held.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
     Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
     `largest_...` and `..._range` at the end limit these features.
@@ -1952,7 +1955,7 @@ class DecideConfig:
         low=-inf,
     )
     held_out_constant: float = setting(
-        0.333,
+        0.25,
         "1",
         "Weight: log of the odds that the size on held-out recordings is the fitted size, and not "
         "that of a stand-in.",
@@ -1965,7 +1968,7 @@ class DecideConfig:
         low=-inf,
     )
     times_constant: float = setting(
-        0.333,
+        0.25,
         "1",
         "Weight: log of the odds that the size is the same in all parts in time, and does not vary "
         "as that of a stand-in.",
@@ -1979,7 +1982,7 @@ class DecideConfig:
         low=-inf,
     )
     ranges_constant: float = setting(
-        0.333,
+        0.25,
         "1",
         "Weight: log of the same odds for ranges of a speed, a command or the heading.",
         low=-inf,
@@ -2075,7 +2078,9 @@ class DecideConfig:
         "features `held_out_constant`, `times_constant` and `ranges_constant`.",
         low=1e-6,
     )
-    largest_constant: float = setting(4.0, "1", "Limit of these features, of either sign.")
+    largest_constant: float = setting(
+        4.0, "1", "Upper limit of these features; odds against a constant size count as zero."
+    )
     largest_unexplained: float = setting(4.0, "1", "Upper limit of the feature `unexplained`.")
     largest_structure: float = setting(1.0, "1", "Upper limit of the feature `structure`.")
     largest_alternative: float = setting(2.0, "1", "Upper limit of the feature `alternative`.")

@@ -90,7 +90,9 @@ def _log_odds_of_constant_size(variation: Variation, config: DecideConfig) -> fl
     """Limited log odds that the size of an effect is as constant as that of a true one.
 
     The alternative is a size that varies as that of a stand-in. Where the parts of the data do not
-    determine the size, the odds are even, which a small excess alone does not tell.
+    determine the size, the odds are even, which a small excess alone does not tell. Odds against a
+    constant size are not counted: the law of a real effect never has exactly the form of a
+    candidate, so that its size varies, too, and the excess counts already.
     """
 
     def log_likelihood(sd: float) -> float:
@@ -98,7 +100,7 @@ def _log_odds_of_constant_size(variation: Variation, config: DecideConfig) -> fl
         return -0.5 * (variation.chi_square / spread + variation.dof * log(spread))
 
     odds = log_likelihood(config.size_tolerance) - log_likelihood(config.stand_in_variation)
-    return _within(odds, -config.largest_constant, config.largest_constant)
+    return _within(odds, 0.0, config.largest_constant)
 
 
 def exceeds_range(consistency: Consistency, config: DecideConfig) -> bool:
