@@ -30,7 +30,7 @@ from boatsim.physics.base import param
 # Steady motions at which the loops are analysed on a vessel, and the pulses that excite them there:
 # large against the rounding of the commands, and small enough that no motor reverses or saturates
 AHEAD = 0.4  # [m/s] a slow speed of the scale boat, Froude number 0.12
-RATED_TURN = 0.1396  # [rad/s] 8 deg/s, the rated turn of the thesis
+RATED_TURN = 0.1396  # [rad/s] 8 deg/s, the rated turn of the boat
 SURGE_PULSE = 0.02  # [m/s]
 SWAYING_PULSE = 0.005  # [m/s] of surge in sway, where the allocation leaves little thrust to surge
 YAW_PULSE = 0.01  # [rad/s]
