@@ -98,10 +98,10 @@ def _rows() -> Iterable[tuple[str, str, Test, Test]]:
             lambda r: r.verdict in ("described", "unknown"),
         ),
         (
-            "good log and boat: nothing named",
+            "good log and boat: nothing wrong named",
             "-",
             lambda r: r.kind == "good" and bool(r.verdict),
-            lambda r: not r.effects,
+            lambda r: not r.false_names,
         ),
         (
             "second log predicted with at most half the error",
