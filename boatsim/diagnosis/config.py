@@ -1786,7 +1786,9 @@ class DecideConfig:
     419 of seed 9 and the first 210 of seed 10, when this sign was related to the axes of an effect.
     The three weights of a constant size are equal, because these odds come from the same data. Of
     0, 0.2, 1/3 and 1/2 the middle ones had the smallest log loss over 24 logs of seed 12 and 18
-    logs of `validation.owner_logs` (seeds 101 and 102), with the other weights held.
+    logs of `validation.owner_logs` (seeds 101 and 102), with the other weights held. On 120 logs of
+    seed 13 they made names too sure where nothing remained unexplained, and are now multiplied by
+    the feature `unexplained`, relative to its limit.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
     Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
     `largest_...` and `..._range` at the end limit these features.

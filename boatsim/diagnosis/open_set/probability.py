@@ -40,6 +40,9 @@ def logistic_features(
     least = config.least_reference_gain
     off = abs(held_out.value - 1.0) / hypot(held_out.sd, config.size_tolerance)
     times, ranges = consistency.between_times, consistency.between_ranges
+    unexplained = _within(log_signs.unexplained, 0.0, config.largest_unexplained)
+    # The alternative to a constant size is an error of form, which leaves unexplained force
+    rough = unexplained / config.largest_unexplained
     off_chi_square = (held_out.value - 1.0) ** 2 / held_out.sd**2
     unseen = Variation(0.0, off_chi_square, 1, held_out.sd**-2)
     alternative = consistency.alternative_gain / max(effect.gain, least)
@@ -52,12 +55,12 @@ def logistic_features(
             held_out.significance, *config.held_out_significance_range
         ),
         "held_out_deviation": _within(off, 0.0, config.largest_held_out_deviation),
-        "held_out_constant": _log_odds_of_constant_size(unseen, config),
+        "held_out_constant": rough * _log_odds_of_constant_size(unseen, config),
         "times_apart": _within(times.excess, 0.0, config.largest_variation),
-        "times_constant": _log_odds_of_constant_size(times, config),
+        "times_constant": rough * _log_odds_of_constant_size(times, config),
         "ranges_apart": _within(ranges.excess, 0.0, config.largest_variation),
-        "ranges_constant": _log_odds_of_constant_size(ranges, config),
-        "unexplained": _within(log_signs.unexplained, 0.0, config.largest_unexplained),
+        "ranges_constant": rough * _log_odds_of_constant_size(ranges, config),
+        "unexplained": unexplained,
         "structure": _within(structure, 0.0, config.largest_structure),
         "alternative": _within(alternative, 0.0, config.largest_alternative),
         "prior_distance": log1p(consistency.prior_distance),

@@ -69,6 +69,12 @@ def test_a_constant_size_counts_where_the_parts_determine_it() -> None:
     assert constancy(varies) == 0.0
 
 
+def test_a_constant_size_tells_nothing_where_no_force_is_unexplained() -> None:
+    signs = replace(EXTREME, between_times=Variation(0.0, 5.0, 7, precision=1e4))
+    clean = replace(LOG, unexplained=0.0)
+    assert logistic_features(EFFECT, False, signs, clean, CONFIG)["times_constant"] == 0.0
+
+
 def test_odds_of_a_constant_size_are_those_of_normal_distributions() -> None:
     config = replace(CONFIG, largest_constant=1e6)
     held_out = Factor(1.2, 0.2)
