@@ -1784,11 +1784,10 @@ class DecideConfig:
     logs were being chosen. The two weights of a stochastic force were fitted again to about 650
     logs of the seeds 4 to 6, and that of `alternative` to the 306 logs with a cause among the first
     419 of seed 9 and the first 210 of seed 10, when this sign was related to the axes of an effect.
-    The three weights of a constant size are equal, because these odds come from the same data. Of
-    0, 0.2, 1/3 and 1/2 the middle ones had the smallest log loss over 24 logs of seed 12 and 18
-    logs of `validation.owner_logs` (seeds 101 and 102), with the other weights held. On 120 logs of
-    seed 13 they made names too sure where nothing remained unexplained, and are now multiplied by
-    the feature `unexplained`, relative to its limit.
+    The three weights of a constant size were not fitted but set by hand: they are equal, and small,
+    because these odds come from the same data. On 119 logs of seed 13 they made names too sure
+    where nothing remained unexplained, and are now multiplied by the feature `unexplained`,
+    relative to its limit.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
     Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
     `largest_...` and `..._range` at the end limit these features.
@@ -2077,7 +2076,8 @@ class DecideConfig:
         0.5,
         "1",
         "Share of its size by which that of a stand-in varies between parts of the data, in the "
-        "features `held_out_constant`, `times_constant` and `ranges_constant`.",
+        "features `held_out_constant`, `times_constant` and `ranges_constant`: five times "
+        "`size_tolerance`, by which a true one may vary.",
         low=1e-6,
     )
     largest_constant: float = setting(

@@ -126,10 +126,10 @@ def _required_lead(sets: CandidateSets, one: IdentifiedEffect, rival: str) -> fl
     deviates from the usual order only if the recordings show it.
     """
     name, alike = one.name, sets.config.select.alike
-    refines = (name in sets.refining, rival in sets.refining)
-    if refines[0] != refines[1]:
+    refines = name in sets.refining
+    if refines != (rival in sets.refining):
         lead = max(alike, sets.config.select.refining_lead * one.gain)
-        return lead if refines[0] else -lead
+        return lead if refines else -lead
     if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
         return -alike if name.startswith(REORDERED) else alike
     return sets.config.fit.refit_gain

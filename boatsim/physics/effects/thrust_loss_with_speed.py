@@ -16,8 +16,8 @@ ROUNDED = 1e-3
 
 
 @njit(inline="always")
-def thrust_that_loses(thrust: float, full: float) -> float:
-    """Return the magnitude to which the loss of thrust with the speed of advance is proportional.
+def loss_reference_thrust(thrust: float, full: float) -> float:
+    """Return the reference thrust to which the loss with the speed of advance is proportional.
 
     The thrust of a propeller at rest grows with the square of its revolutions, its loss with the
     revolutions. The loss is therefore proportional to the square root of the thrust.
@@ -27,7 +27,7 @@ def thrust_that_loses(thrust: float, full: float) -> float:
         full: Full thrust at rest in this direction [N]; 0: proportional to the thrust.
 
     Returns:
-        The magnitude [N]; that of the full thrust at full thrust.
+        The reference thrust [N], positive; at full thrust, nearly the full thrust.
     """
     size = abs(thrust)
     if full > 0.0:
@@ -51,8 +51,9 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     full = q.full_ahead if s.thrust > 0.0 else q.full_astern
-    size = thrust_that_loses(s.thrust, full)
-    return thrust_wrench_at_mount(-t.gain * (q.loss + q.curve * abs(m.ur)) * m.ur * size, s, t)
+    reference = loss_reference_thrust(s.thrust, full)
+    loss = (q.loss + q.curve * abs(m.ur)) * m.ur * reference
+    return thrust_wrench_at_mount(-t.gain * loss, s, t)
 
 
 @dataclass(frozen=True)
