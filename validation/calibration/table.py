@@ -82,6 +82,7 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
     none = of_kind(records, "none")
     unknown = [r for r in of_kind(records, "unknown") if clearly_visible(r)]
     removed = of_kind(records, "removed")
+    others = [r for r in records if r["kind"] != "removed"]
     known = of_kind(records, "single", "pair", "several")
     single = [r for r in of_kind(records, "single") if clearly_visible(r)]
     pair = [r for r in of_kind(records, "pair") if clearly_visible(r)]
@@ -91,6 +92,9 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
     concealed = [r for r in unknown if r["concealed"]]
     return {
         "expected calibration error": f"{calibration_error(reliability(stated)):.3f}",
+        "the same where no true effect was removed": (
+            f"{calibration_error(reliability(statements(others))):.3f}"
+        ),
         f"names stated at {SURE:g} or more, right": share(sure),
         "logs without a cause, with a name": count(none, named),
         "logs without a cause, called unknown": count(none, flagged),

@@ -69,11 +69,17 @@ def quadratic_evidence_gain(best: Fit, *names: str) -> float:
 def log_evidence_gains(fits: Mapping[str, Fit], base: Fit) -> dict[str, float]:
     """Return the log evidence of each of several fits minus that of a reference fit [nats].
 
+    A fit that diverges gains minus infinity, also if the reference fit diverges.
+
     Args:
         fits: Fits by name.
         base: The fit that they are compared with.
     """
-    return {name: found.evidence - base.evidence for name, found in fits.items()}
+    gains = {}
+    for name, found in fits.items():
+        diverges = not np.isfinite(found.evidence)
+        gains[name] = -np.inf if diverges else found.evidence - base.evidence
+    return gains
 
 
 def fits_with_evidence_above(fits: Mapping[str, Fit], least: float) -> dict[str, Fit]:

@@ -8,7 +8,12 @@ import pytest
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, FreeParameter
-from boatsim.diagnosis.search.evidence import quadratic_evidence_gain, unknown_cause_threshold
+from boatsim.diagnosis.search.evidence import (
+    combined_gain,
+    log_evidence_gains,
+    quadratic_evidence_gain,
+    unknown_cause_threshold,
+)
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, may_only_correct_other_effect
 
 DISTANCE = 3.0  # of each parameter from zero effect [sd]
@@ -48,3 +53,15 @@ def test_an_effect_may_correct_the_shape_of_another_where_only_their_sum_is_dete
     assert may_only_correct_other_effect(found, gaining(1.0), "square", DEFAULT.select) is may
     much = 2.0 * unknown_cause_threshold(DEFAULT.select, both)
     assert not may_only_correct_other_effect(found, gaining(much), "square", DEFAULT.select)
+
+
+@pytest.mark.parametrize("of_reference", [0.0, -np.inf])
+def test_a_fit_that_diverges_gains_nothing_whatever_it_is_compared_with(
+    of_reference: float,
+) -> None:
+    found = fit_with_correlation(0.0)
+    reference = replace(found, evidence=of_reference)
+    for evidence in (-np.inf, np.nan):
+        gains = log_evidence_gains({"cube": replace(found, evidence=evidence)}, reference)
+        assert gains == {"cube": -np.inf}
+        assert combined_gain([*gains.values(), 2.0]) == 2.0
