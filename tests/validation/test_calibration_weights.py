@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from scipy.special import expit
 
-from validation.calibration.weights import WeightPrior, cross_validated, fit_weights, weight_prior
+from validation.calibration.weights import (
+    WeightPrior,
+    cross_validated,
+    fit_intercept,
+    fit_weights,
+    weight_prior,
+)
 
 TRUE, INTERCEPT = np.array([1.0, -2.0, 0.0]), 0.5
 
@@ -50,3 +56,10 @@ def test_the_cross_validated_probability_of_a_trial_does_not_use_that_trial() ->
     own = trials % 10 == 3
     assert np.array_equal(before[own], after[own])
     assert not np.allclose(before[~own], after[~own])
+
+
+def test_the_intercept_alone_makes_the_mean_probability_the_share_of_right_names() -> None:
+    X, right = sample(2000)
+    intercept = fit_intercept(X @ TRUE, right)
+    assert intercept == pytest.approx(INTERCEPT, abs=0.1)
+    assert np.mean(expit(X @ TRUE + intercept)) == pytest.approx(right.mean(), abs=1e-3)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 from scipy.special import expit
 
 from boatsim.diagnosis.config import DEFAULT
@@ -134,6 +134,20 @@ def fit_weights(X: Array, right: Array, prior: WeightPrior) -> tuple[float, Arra
     return float(w[0]), w[1:] / sd
 
 
+def fit_intercept(odds: Array, right: Array) -> float:
+    """Return the most probable intercept of a logistic regression with given weights.
+
+    Args:
+        odds: Weighted sums of the features (N,).
+        right: Outcomes (N,), 0 or 1.
+    """
+
+    def loss(intercept: float) -> float:
+        return float(np.sum(np.logaddexp(0.0, odds + intercept) - right * (odds + intercept)))
+
+    return float(minimize_scalar(loss).x)
+
+
 def cross_validated(X: Array, right: Array, trials: Array, prior: WeightPrior) -> Array:
     """Return probabilities (N,), each from weights that were fitted to other trials."""
     found = np.zeros(len(X))
@@ -155,6 +169,7 @@ def print_weights(records: Sequence[Record], new: Collection[str] = ()) -> None:
     prior = weight_prior(names, new)
     intercept, weights = fit_weights(X, right, prior)
     print(f"{len(right)} identified effects, {right.mean():.3f} right")
+    print(f"intercept with the weights in use {fit_intercept(X @ prior.mean, right):.3g}")
     probabilities = np.clip(cross_validated(X, right, trials, prior), 1e-9, 1.0 - 1e-9)
     log_loss = -np.mean(np.log(np.where(right > 0, probabilities, 1.0 - probabilities)))
     print(f"cross-validated log loss {log_loss:.3f}")
