@@ -1788,8 +1788,8 @@ class DecideConfig:
     because these odds come from the same data. On 119 logs of seed 13 they made names too sure
     where nothing remained unexplained, and are now multiplied by the feature `unexplained`,
     relative to its limit. With these weights the intercept was fitted again, to about 390 logs of
-    the seeds 12 to 14 and to 21 names in simulated owners' logs, halfway between the value that fits
-    best with and without the logs whose true effect is removed from the candidates.
+    the seeds 12 to 14 and to 21 names in simulated owners' logs: halfway between the values that
+    fit best with and without the logs whose true effect is removed from the candidates.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
     Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
     `largest_...` and `..._range` at the end limit these features.
