@@ -1,9 +1,10 @@
 """boatsim: small-boat motion and control on MuJoCo, and diagnosis of models from recordings.
 
 `load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose`, `replay` and `export` are the
-Python equivalents of the commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and
-`Sweep` are their arguments and results; `Batch` and `Fleet` simulate many vessels together. All are
-defined or exported by `boatsim.api`, which is imported at first use.
+Python equivalents of the commands; `wave_field` gives the waves of a scenario. `Vessel`,
+`Scenario`, `Recording`, `Diagnosis`, `Run`, `Sweep` and `WaveField` are arguments and results;
+`Batch` and `Fleet` simulate many vessels together. All are defined or exported by `boatsim.api`,
+which is imported at first use.
 """
 
 from importlib import import_module
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
         Scenario,
         Sweep,
         Vessel,
+        WaveField,
         diagnose,
         export,
         load_scenario,
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
         replay,
         run,
         sweep,
+        wave_field,
     )
 
 __all__ = [
@@ -44,6 +47,7 @@ __all__ = [
     "Scenario",
     "Sweep",
     "Vessel",
+    "WaveField",
     "__version__",
     "diagnose",
     "export",
@@ -53,6 +57,7 @@ __all__ = [
     "replay",
     "run",
     "sweep",
+    "wave_field",
 ]
 
 __version__: str

@@ -39,6 +39,8 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Body as Body
 from boatsim.physics.vessel import CommandChannel as CommandChannel
 from boatsim.physics.vessel import Vessel as Vessel
+from boatsim.physics.vessel.wave_field import wave_field as effects_wave_field
+from boatsim.physics.waves.field import WaveField as WaveField
 from boatsim.progress import Report, ignore_progress
 from boatsim.recordings import table
 from boatsim.recordings.exporting.mcap import write_mcap
@@ -698,6 +700,37 @@ def sweep(
     folder, metrics = Path(checked_name("out", out)), checked_names("norms", norms)
     plan = make_plan(checked_names("scenarios", scenarios), axes, sampled, runs, seed, design)
     return Sweep(*run_plan(plan, folder, jobs, ray, metrics, report), folder)
+
+
+def wave_field(scenario: Name | Scenario, seed: int | None = None) -> WaveField:
+    """Return the waves of a scenario, whose elevation is known at any place and time.
+
+    They are the waves that exert the forces in a run with this seed, and whose elevation at the
+    vessel is the column `wave_elevation_m` of its recording. Waves of `irregular_sea` have an
+    elevation; `wave_forcing` and `filtered_sea` are forces alone.
+
+    Args:
+        scenario: Name or file of a scenario, or a `Scenario`.
+        seed: Seed of the random waves; the scenario's by default.
+
+    Returns:
+        The waves, none in calm water.
+
+    Raises:
+        BadInput: If the scenario can not be used.
+
+    >>> import boatsim
+    >>> sea = boatsim.wave_field("eastward_ho/seas_30", seed=1)
+    >>> len(sea), round(sea.significant_height, 2)
+    (160, 1.88)
+    >>> float(sea.elevation(0.0, 0.0, t=10.0)) == float(sea.elevation([0.0], 0.0, t=10.0)[0])
+    True
+    """
+    loaded = _resolve_scenario(scenario, None, None)
+    number = loaded.file.seed
+    if seed is not None:
+        number = checked_integer("seed", seed)
+    return effects_wave_field(effect.with_seed(number) for effect in loaded.vessel.effects)
 
 
 def _checked_values(argument: str, values: object) -> str | list[Any]:

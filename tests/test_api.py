@@ -21,8 +21,21 @@ from boatsim.errors import BadInput
 from boatsim.physics import content
 from boatsim.physics.effects.current import Current
 
-OFFERED = ("diagnose", "export", "load_scenario", "load_vessel", "read", "replay", "run", "sweep")
-NOUNS = ("Batch", "Diagnosis", "Fleet", "Recording", "Run", "Scenario", "Sweep", "Vessel")
+OFFERED = (
+    *("diagnose", "export", "load_scenario", "load_vessel", "read", "replay", "run", "sweep"),
+    "wave_field",
+)
+NOUNS = (
+    "Batch",
+    "Diagnosis",
+    "Fleet",
+    "Recording",
+    "Run",
+    "Scenario",
+    "Sweep",
+    "Vessel",
+    "WaveField",
+)
 ROOT = Path(__file__).parents[1]
 USER = """
 from typing import reveal_type

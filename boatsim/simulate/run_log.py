@@ -7,6 +7,7 @@ from operator import attrgetter
 from boatsim.physics.base import Force, make_motion
 from boatsim.physics.debugging import python_function
 from boatsim.physics.signals import AXES, COMPONENTS, motion_signals
+from boatsim.physics.vessel.wave_field import wave_field
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.camera import CAMERA_POSE, Frame
 from boatsim.simulate.camera_log import mark_columns
@@ -17,6 +18,7 @@ from boatsim.simulate.tracking_errors import GOAL
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 SENSE_VALUES = attrgetter("psi", "r", "ax", "ay", "u", "x", "y")  # of a Sense, in the same order
+WAVE_ELEVATION = "wave_elevation_m"
 REFERENCE = "reference_"  # prefix of estimates that are reference signals of a controller
 
 
@@ -26,8 +28,9 @@ class RunLog:
     The columns are the motion, the commands in force and groups with a prefix. `sent_` is a command
     as the controller sent it, before its range limits it; `goal_` is a goal, nan where none is in
     force; `actual_` is an actuator; `sensed_` and `camera_` are measurements. `force_` is the sum
-    of all effects and `wind_` that of the effects of air. `estimate_` is an estimate of the
-    controller.
+    of all effects and `wind_` that of the effects of air. `wave_elevation_m` is the elevation of
+    the sea at the vessel's origin, upward, where the waves of an effect have one. `estimate_` is an
+    estimate of the controller.
 
     Attributes:
         scenario: The scenario.
@@ -62,6 +65,7 @@ class RunLog:
         # goals that are commands are already in the columns `sent_`
         self._goals = [key for key in self.scenario.goal_keys if key not in vessel.commands]
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
+        self._waves = wave_field(vessel.effects)
         self.due = 0.0
         file = self.scenario.file
         rows = file.duration / max(file.log, file.step)
@@ -79,6 +83,8 @@ class RunLog:
         columns += map("force_{}".format, components)
         if self._winds:
             columns += map("wind_{}".format, components)
+        if len(self._waves):
+            columns.append(WAVE_ELEVATION)
         columns.append("contacts")
         for name in self._estimates:
             columns += [f"estimate_{name}", f"estimate_{name}_low", f"estimate_{name}_high"]
@@ -125,6 +131,8 @@ class RunLog:
         row += map(wrench.__getitem__, self._axes)
         if self._winds:
             row += map(self._wind_wrench(state).__getitem__, self._axes)
+        if len(self._waves):
+            row.append(float(self._waves.elevation(state.x, state.y, state.t)))
         row.append(engine.contacts)
         for name in self._estimates:
             row += estimates[name]

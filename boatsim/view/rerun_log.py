@@ -18,6 +18,7 @@ import numpy as np
 import rerun as rr
 
 from boatsim.physics.signals import POSE, Array
+from boatsim.physics.waves.field import WaveField
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.evaluation import MISSED, NO_TOLERANCE, REPRODUCED, MetricEntry, RunEntry
@@ -26,6 +27,7 @@ from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
 from boatsim.view.stream import Stream
+from boatsim.view.wave_surface import WaveSurface
 
 # [rows] that are collected before they are written, because small chunks make large files
 BUFFER = 1000
@@ -72,13 +74,20 @@ class RerunLog:
     Leaving its `with` block writes the rest.
     """
 
-    def __init__(self, path: Path | str | None, scene: Scene, viewer: str | None = None) -> None:
+    def __init__(
+        self,
+        path: Path | str | None,
+        scene: Scene,
+        viewer: str | None = None,
+        waves: WaveField | None = None,
+    ) -> None:
         """Open the log.
 
         Args:
             path: The `.rrd` file; None: none.
             scene: What is drawn.
             viewer: Address of a viewer that is fed; None: none.
+            waves: Waves that move the surface of the water; None: it is still.
 
         Raises:
             OSError: If the file can not be written; all methods may raise it.
@@ -89,10 +98,16 @@ class RerunLog:
         # time and place of the last point of the path
         self._trail: tuple[float, Array] | None = None
         self._known: set[str] = set()
+        self._surface: WaveSurface | None = None
+        self._surface_time = -math.inf  # [s] of the last frame of the surface
+        if waves is not None and len(waves):
+            self._surface = WaveSurface.for_scene(waves, scene)
         self.stream = Stream("boatsim", path, viewer)
         if self.stream.has_receiver:
             _send_axes(self.stream)
-            _draw_tank(self.stream, scene)
+            _draw_tank(self.stream, scene, still=self._surface is None)
+            if self._surface is not None:
+                _draw_surface(self.stream)
             _draw_hull(self.stream, scene, "boat")
             self._write_text("Metrics follow when the run is over.")
             self.stream.flush()
@@ -161,6 +176,8 @@ class RerunLog:
         _log_arrows(self.stream, rows, self.scene)
         self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
         _log_camera(self.stream, rows)
+        if self._surface is not None:
+            self._surface_time = _log_surface(self.stream, rows, self._surface, self._surface_time)
         self.stream.flush()
 
 
@@ -373,10 +390,11 @@ def _picture_points(x: Array, y: Array, z: float = 0.0) -> Array:
     return np.column_stack([x, -y, np.full(len(x), z)])
 
 
-def _draw_tank(stream: Stream, scene: Scene) -> None:
+def _draw_tank(stream: Stream, scene: Scene, still: bool = True) -> None:
+    """Draw the tank; the water only where it is still."""
     length, width, x, y = scene.tank
     for solid in scene.solids:
-        if solid.part == "tank":
+        if solid.part == "tank" and (still or solid.name != "water"):
             stream.log(f"{WORLD}/tank/{solid.name}", _make_mesh(_upper_side(solid)), static=True)
     if "tank" in {solid.part for solid in scene.solids}:
         return
@@ -393,6 +411,31 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
         albedo_factor=COLOURS["water"],
     )
     stream.log(f"{WORLD}/tank/water", water, static=True)
+
+
+def _draw_surface(stream: Stream) -> None:
+    """Draw what does not change of the surface of the sea."""
+    look = rr.Mesh3D.from_fields(
+        triangle_indices=WaveSurface.triangles(), albedo_factor=COLOURS["water"]
+    )
+    stream.log(f"{WORLD}/sea", look, static=True)
+
+
+def _log_surface(stream: Stream, rows: Recording, surface: WaveSurface, after: float) -> float:
+    """Log the frames of the surface of the sea in some rows; return the time of the last frame."""
+    zero = np.zeros(len(rows))
+    x, y = rows.signals.get("x_m", zero), rows.signals.get("y_m", zero)
+    due = surface.rows_of_frames(rows.t, after)
+    if not len(due):
+        return after
+    frames = [surface.vertices(float(x[i]), float(y[i]), float(rows.t[i])) for i in due]
+    points, normals = map(np.concatenate, zip(*frames, strict=True))
+    count = len(points) // len(due)
+    columns = rr.Mesh3D.columns(vertex_positions=points, vertex_normals=normals)
+    stream.send_columns(
+        f"{WORLD}/sea", _time_columns(rows.t[due]), columns.partition([count] * len(due))
+    )
+    return float(rows.t[due[-1]])
 
 
 def _draw_hull(

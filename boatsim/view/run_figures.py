@@ -24,6 +24,7 @@ MOTION = {  # title of a plot -> signals that it shows, with their names
     "Roll": {"phi_rad": "roll"},
     "Pitch": {"theta_rad": "pitch"},
     "Heave": {"z_m": "heave, down"},
+    "Waves": {"wave_elevation_m": "elevation of the sea at the vessel, up"},
 }
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from boatsim.physics.vessel.wave_field import wave_field
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_files import RunObserver, StartObserver
@@ -25,13 +26,14 @@ def rerun_observers(viewer: str | None = None) -> list[StartObserver]:
     @contextmanager
     def rerun_file_observer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
         scene = scene_from_model(engine.model, engine.vessel, engine.tank)
-        with RerunLog(folder / FILE, scene) as log:
+        waves = wave_field(engine.vessel.effects)
+        with RerunLog(folder / FILE, scene, waves=waves) as log:
             yield log
 
     @contextmanager
     def rerun_viewer_observer(folder: Path, engine: Engine | OpenWater) -> Iterator[RunObserver]:
         scene = scene_from_model(engine.model, engine.vessel, engine.tank)
-        with RerunLog(None, scene, viewer) as log:
+        with RerunLog(None, scene, viewer, wave_field(engine.vessel.effects)) as log:
             yield log
 
     if viewer is None:

@@ -256,7 +256,7 @@ EDITS = [
     ("kernel/compiling.py", ("\n", "\n\n"), (True, True)),
     ("kinds/force.py", ('ADD = "; "', 'ADD = ";  "'), (True, True)),
     ("signals.py", ("\n", "\n\n"), (True, True)),
-    ("effects/irregular_sea.py", ("LOWEST = 0.45", "LOWEST = 0.5"), (False, True)),
+    ("waves/sea_state.py", ("LOWEST = 0.45", "LOWEST = 0.5"), (False, True)),
     ("effects/righting_arm.py", ("return wrench(K=-", "return wrench(K=-2.0 * "), (True, False)),
     ("effects/tether.py", ("SOFT = 0.02", "SOFT = 0.03"), (False, False)),
 ]

@@ -1,103 +1,59 @@
-"""Irregular sea: long-crested wind waves that exert coherent forces in sway, yaw and roll."""
+"""Irregular sea: wind waves and swell that exert coherent forces in sway, yaw and roll."""
 
 from dataclasses import dataclass, replace
-from math import cos, exp, log, pi, sin, sqrt
+from math import cos, pi, sin
 from typing import Any, ClassVar, Self
 
+import numpy as np
 from numba import njit
 
 from boatsim.errors import BadInput
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
-from boatsim.physics.noise import seeded_realisation, uniform_random
+from boatsim.physics.debugging import interpreted
+from boatsim.physics.noise import seeded_realisation
+from boatsim.physics.param import name_code_parameter
+from boatsim.physics.terms import index_code
+from boatsim.physics.waves.dispersion import pressure_attenuation, wave_number
+from boatsim.physics.waves.field import WaveField
+from boatsim.physics.waves.hull_integrals import beam_attenuation, wave_slope_integrals
+from boatsim.physics.waves.sea_state import (
+    SPECTRA,
+    components,
+    energy_above,
+    sea_state,
+    wave_component,
+    wave_direction,
+)
 
-LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
-HIGHEST = 4.0  # default cut over the modal frequency; 0.5 % of the energy lies above
 # Largest share of the energy above the cut: the significant height is then 1 % too low
 MOST_LOST = 0.02
 GRAVITY = particulars.GRAVITY
 
 
-@njit(inline="always")
-def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
-    """Return the integrals of a wave's slope along a hull that give its side force and yaw moment.
-
-    They are the integrals of (1 - taper x^2) cos(s x) and (1 - taper x^2) x sin(s x) over x in [-1,
-    1], for a hull of parabolic section areas.
+@njit(forceinline=True)
+def heading_of_waves(bearing: float, m: Any, q: Any) -> tuple[float, float, float]:
+    """Return the direction of waves in body axes, and the ship's place along it.
 
     Args:
-        s: Wave number times half the length, along the hull [-].
-        taper: Taper of the section areas [-].
-    """
-    if abs(s) < 0.02:  # series, because the closed forms cancel numerically
-        s2 = s * s
-        return 2.0 - 2.0 / 3.0 * taper - s2 * (1.0 / 3.0 - taper / 5.0), s * (
-            2.0 / 3.0 - 0.4 * taper - s2 * (1.0 / 15.0 - taper / 21.0)
-        )
-    c, n = cos(s), sin(s)
-    # halves of the integrals of cos and x^2 cos
-    even = n / s
-    square = n / s + 2.0 * c / s**2 - 2.0 * n / s**3
-    odd = (n - s * c) / s**2
-    cube = (3.0 * s * s * n - s**3 * c + 6.0 * s * c - 6.0 * n) / s**4
-    return 2.0 * (even - taper * square), 2.0 * (odd - taper * cube)
-
-
-@njit(inline="always")
-def beam_attenuation(s: float) -> float:
-    """Return the roll moment of a wave on a section over that of a plane with the wave's slope.
-
-    It is 3 (sin s - s cos s) / s^3: the integral of y sin(2 s y / b) over the breadth b, divided by
-    that of y (2 s y / b).
-
-    Args:
-        s: Wave number across the hull times half the breadth [-].
-    """
-    if abs(s) < 0.05:  # series, because the closed form cancels numerically
-        return 1.0 - s * s / 10.0 + s**4 / 280.0
-    return 3.0 * (sin(s) - s * cos(s)) / s**3
-
-
-@njit(inline="always")
-def frequency_range(q: Any) -> tuple[float, float]:
-    """Return the lowest and the highest frequency of the waves [rad/s].
-
-    Args:
+        bearing: Direction to which the waves run [rad].
+        m: Motion of the hull.
         q: Parameters of the effect.
+
+    Returns:
+        Parts of the direction ahead and to starboard, and the distance [m] travelled by the ship
+        through the water along the direction of the waves.
     """
-    modal = 2.0 * pi / q.modal_period
-    if q.cut > 0.0:
-        return LOWEST * modal, max(q.cut, modal)
-    return LOWEST * modal, HIGHEST * modal
-
-
-@njit(inline="always")
-def wave_component(k: int, q: Any) -> tuple[float, float, float]:
-    """Return frequency [rad/s], amplitude [m] and phase [rad] of one wave of the sea.
-
-    Each of the `components` cells of equal width in frequency has one wave, at a random frequency
-    inside the cell and with the energy of the spectrum in it.
-
-    Args:
-        k: Number of the wave, from 0.
-        q: Parameters of the effect.
-    """
-    low, high = frequency_range(q)
-    modal, width = 2.0 * pi / q.modal_period, (high - low) / int(q.components)
-    below = 0.0  # share of the energy below the cell
-    if k > 0:
-        below = exp(-1.25 * (modal / (low + width * k)) ** 4)
-    above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
-    return (
-        low + width * (k + uniform_random(q.realisation, 2 * k)),
-        q.significant_height * sqrt((above - below) / 8.0),
-        2.0 * pi * uniform_random(q.realisation, 2 * k + 1),
-    )
+    ahead, across = cos(bearing), sin(bearing)  # direction of the waves in earth axes
+    if q.course_kept != 0.0:
+        return ahead, across, ahead * q.speed * m.t
+    run = ahead * (m.x - m.water_north * m.t) + across * (m.y - m.water_east * m.t)
+    return m.cos_psi * ahead + m.sin_psi * across, m.cos_psi * across - m.sin_psi * ahead, run
 
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Return the force of an irregular, long-crested sea in sway, yaw and roll.
+    """Return the force of an irregular sea in sway, yaw and roll.
 
     It is a sum over wave components. The waves travel on the water, which moves with the current:
     the position along them is that relative to the water, from the origin at t = 0.
@@ -112,23 +68,17 @@ def law(m: Any, q: Any) -> Wrench:
     Y = K = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
-    ahead, across = cos(q.toward), sin(q.toward)  # direction of the waves in earth axes
-    # [m] distance travelled by the ship through the water along the direction of the waves
-    run = ahead * (m.x - m.water_north * m.t) + across * (m.y - m.water_east * m.t)
-    if q.course_kept != 0.0:
-        run = ahead * q.speed * m.t
-    else:
-        ahead, across = (
-            m.cos_psi * ahead + m.sin_psi * across,
-            m.cos_psi * across - m.sin_psi * ahead,
-        )
+    ahead, across, run = heading_of_waves(q.toward, m, q)
     half = 0.5 * q.length
     # of water, per length of hull [N]
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
-    for k in range(int(q.components)):
-        w, amplitude, phase = wave_component(k, q)
-        number = w * w / GRAVITY  # deep water
-        slope = number * amplitude
+    sea = sea_state(q)
+    for k in range(int(sea.number)):
+        w, amplitude, phase = wave_component(k, q, sea)
+        if q.spreading > 0.0:
+            ahead, across, run = heading_of_waves(wave_direction(k, q), m, q)
+        number = wave_number(w, q.depth)
+        slope = number * amplitude * across
         theta = w * m.t - number * run + phase
         up, turn = slope * sin(theta), slope * cos(theta)
         if q.flat != 0.0:
@@ -136,30 +86,43 @@ def law(m: Any, q: Any) -> Wrench:
             K += up
         else:
             together, apart = wave_slope_integrals(number * ahead * half, q.taper)
-            deep = exp(-number * q.centre_depth)
+            deep = pressure_attenuation(number, q.centre_depth, q.depth)
             Y += deep * together * up
             N -= deep * apart * turn
             sides = beam_attenuation(0.5 * number * across * q.beam)
-            K += exp(-number * q.roll_depth) * sides * up
-    Y *= q.sway * across * (q.mass * GRAVITY if q.flat != 0.0 else weight)
-    N *= q.yaw * across * weight * half
-    return wrench(Y=Y, K=q.roll * across * q.stiffness * K + q.arm * Y, N=N)
+            K += pressure_attenuation(number, q.roll_depth, q.depth) * sides * up
+    Y *= q.sway * (q.mass * GRAVITY if q.flat != 0.0 else weight)
+    N *= q.yaw * weight * half
+    return wrench(Y=Y, K=q.roll * q.stiffness * K + q.arm * Y, N=N)
 
 
 @dataclass(frozen=True)
 class IrregularSea(Force):
-    """Forces of the slope of unidirectional waves of a Bretschneider spectrum.
+    """Forces of the slope of the waves of a spectrum, of one direction or spread about it.
 
     Sway force and yaw moment are integrals of the wave slope over the sections of an ellipsoid. The
     roll moment is the righting stiffness times the wave slope at midship, exp(-k T) times that at
     the surface, and B(s), the mean over the beam: on a section of breadth b the pressure of the
-    elevation a sin(k |sin gamma_r| y) has the moment rho g a integral y sin(k |sin gamma_r| y) dy,
-    and 3 (sin s - s cos s) / s^3, s = k b |sin gamma_r| / 2, is its ratio to that of a plane with
-    the slope a k |sin gamma_r|. With `flat` = 1 the waves are long compared with the hull, and no
-    force is attenuated.
+    elevation a sin(k |sin beta| y) has the moment rho g a integral y sin(k |sin beta| y) dy, and
+    3 (sin s - s cos s) / s^3, s = k b |sin beta| / 2, is its ratio to that of a plane with the
+    slope a k |sin beta|. With `flat` = 1 the waves are long compared with the hull, and no force is
+    attenuated.
 
-    The spectrum ends at `cut`, by default at four times the modal frequency; a cut above which more
-    than 2 % of the energy lies is refused. The waves travel on the water, with the current. With
+    `spectrum` is "bretschneider" (by height and period), "pierson_moskowitz" (a fully developed
+    sea, whose period follows from the height), "jonswap" (with the peak enhancement `gamma`),
+    "torsethaugen" (wind sea and swell of the open ocean) or "regular": one wave of
+    `significant_height` from trough to crest, with its crest at the origin at t = 0. The
+    realisation and the seed of the scenario give the frequencies inside their cells and the phases,
+    with `spreading` the directions, and with `random_amplitudes` = 1 the amplitudes. Each component
+    has one direction.
+
+    The spectrum ends at `cut`, by default at four times the modal frequency, and that of
+    Torsethaugen where 0.5 % of the energy lies above; a cut above which more than 2 % of the energy
+    lies is refused. In water of a `depth` the wave number k follows from w^2 = g k tanh(k h), and
+    the pressure decreases by cosh k (h - z) / cosh k h instead of exp(-k z).
+
+    The waves travel on the water, with the current. The elevation of their surface, which
+    `boatsim.wave_field` gives at any place and time, is the one whose slope exerts the force. With
     `course_kept` = 1 the ship meets the waves as on her initial course (north) at `speed`, so that
     `toward` is the angle of encounter: 0 following sea, pi / 2 beam sea, pi head sea. Otherwise her
     actual heading and position count.
@@ -168,17 +131,19 @@ class IrregularSea(Force):
     formula: ClassVar[str] = (
         r"\begin{aligned} S(\omega) &= \frac{5}{16} \, H_s^2 \, \frac{\omega_m^4}{\omega^5} "
         r"\exp\left(-\frac{5}{4} \, \frac{\omega_m^4}{\omega^4}\right), \quad \omega \le \omega_c "
-        r"\\ s_i &= k_i \sqrt{2 S(\omega_i) \Delta\omega_i} "
-        r"\\ \theta_i &= \omega_i t - k_i \left((x - V_N t) \cos\gamma + (y - V_E t) "
-        r"\sin\gamma\right) + \epsilon_i "
-        r"\\ Y &= f_Y \, w \sin\gamma_r \sum_i e^{-k_i h} J_0(\kappa_i) \, s_i \sin\theta_i "
-        r"\\ N &= -f_N \, w \, \frac{L}{2} \sin\gamma_r \sum_i e^{-k_i h} J_1(\kappa_i) \, s_i "
+        r"\quad \text{(or another spectrum)} "
+        r"\\ a_i &= \sqrt{2 S(\omega_i) \Delta\omega_i}, \quad s_i = k_i a_i, \quad \omega_i^2 = g "
+        r"k_i \tanh k_i d, \quad \gamma_i \sim \cos^n(\gamma_i - \gamma) "
+        r"\\ \theta_i &= \omega_i t - k_i \left((x - V_N t) \cos\gamma_i + (y - V_E t) "
+        r"\sin\gamma_i\right) + \epsilon_i, \quad \eta = -\sum_i a_i \cos\theta_i "
+        r"\\ Y &= f_Y \, w \sum_i e^{-k_i h} J_0(\kappa_i) \, s_i \sin\beta_i \sin\theta_i "
+        r"\\ N &= -f_N \, w \, \frac{L}{2} \sum_i e^{-k_i h} J_1(\kappa_i) \, s_i \sin\beta_i "
         r"\cos\theta_i "
-        r"\\ K &= f_K \, m g \, GM \sin\gamma_r \sum_i e^{-k_i h_K} B(\sigma_i) \, s_i "
+        r"\\ K &= f_K \, m g \, GM \sum_i e^{-k_i h_K} B(\sigma_i) \, s_i \sin\beta_i "
         r"\sin\theta_i + l \, Y "
-        r"\\ w &= \frac{\pi}{4} \rho g T^2 L, \quad \gamma_r = \gamma - \psi "
-        r"\\ \kappa_i &= \tfrac{1}{2} k_i L \cos\gamma_r, \quad "
-        r"\sigma_i = \tfrac{1}{2} k_i b \left|\sin\gamma_r\right| "
+        r"\\ w &= \frac{\pi}{4} \rho g T^2 L, \quad \beta_i = \gamma_i - \psi "
+        r"\\ \kappa_i &= \tfrac{1}{2} k_i L \cos\beta_i, \quad "
+        r"\sigma_i = \tfrac{1}{2} k_i b \left|\sin\beta_i\right| "
         r"\\ J_0(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \cos(\kappa \xi) \, \mathrm{d}\xi "
         r"\\ J_1(\kappa) &= \int_{-1}^{1} (1 - c \xi^2) \, \xi \sin(\kappa \xi) \, \mathrm{d}\xi "
         r"\\ B(\sigma) &= 3 \, \frac{\sin\sigma - \sigma \cos\sigma}{\sigma^3} \end{aligned}"
@@ -187,6 +152,8 @@ class IrregularSea(Force):
         "significant_height": "H_s",
         "toward": r"\gamma",
         "cut": r"\omega_c",
+        "spreading": "n",
+        "depth": "d",
         "sway": "f_Y",
         "roll": "f_K",
         "yaw": "f_N",
@@ -207,6 +174,7 @@ class IrregularSea(Force):
     )
     law: ClassVar = law
 
+    spectrum: str = "bretschneider"  # one of `sea_state.SPECTRA`
     significant_height: float = param(
         0.0, low=0.0, high=30.0, unit="m", words="four times the rms of the elevation; 0: calm"
     )
@@ -238,6 +206,22 @@ class IrregularSea(Force):
         160.0, low=1.0, high=2000.0, unit="", words="number of wave components"
     )
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the realisation")
+    gamma: float = param(
+        3.3, low=1.0, high=7.0, unit="", words="peak enhancement of the spectrum jonswap"
+    )
+    spreading: float = param(
+        0.0,
+        low=0.0,
+        high=200.0,
+        unit="",
+        words="exponent n of the directions, cos^n; 2 to 4 for a wind sea; 0: all waves run alike",
+    )
+    depth: float = param(
+        0.0, low=0.0, high=11000.0, unit="m", words="depth of the water; 0: deep water"
+    )
+    random_amplitudes: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: the amplitudes are random too, not only phases"
+    )
     sway: float = param(
         1.0, low=0.0, high=10.0, unit="", words="factor on the sway force; 1: as the formula"
     )
@@ -310,23 +294,28 @@ class IrregularSea(Force):
         follows="linear_hull.arm?",
     )
 
+    spectrum_code: float = name_code_parameter("code of the spectrum")
+
     def __post_init__(self) -> None:
-        """Check that the waves up to the cut have nearly all energy of the spectrum.
+        """Check the spectrum, and that the waves up to the cut have nearly all of its energy.
 
         Raises:
-            BadInput: More than 2 % of the energy lies above the cut.
+            BadInput: There is no such spectrum, or more than 2 % of the energy lies above the cut.
         """
         super().__post_init__()
-        if self.significant_height == 0.0 or self.cut == 0.0:
+        code = index_code(f"{self.name}: spectrum", self.spectrum, SPECTRA)
+        object.__setattr__(self, "spectrum_code", code)
+        calm = self.significant_height == 0.0
+        if calm or self.cut == 0.0 or self.spectrum == "regular":
             return
-        modal = 2.0 * pi / self.modal_period
-        lost = 1.0 - exp(-1.25 * (modal / self.cut) ** 4)
+        frequency, above = energy_above(self.values())
+        lost = float(np.interp(self.cut, frequency, above))
         if lost > MOST_LOST:
-            lowest = modal * (-1.25 / log(1.0 - MOST_LOST)) ** 0.25
+            lowest = float(np.interp(-MOST_LOST, -above, frequency))
             raise BadInput(
                 f"{self.name}.cut = {self.cut:g} rad/s omits {100.0 * lost:.0f} % of the energy of "
                 f"waves of {self.modal_period:g} s; allowed is at least {lowest:.3g} rad/s, "
-                f"or 0 for {HIGHEST:g} times the modal frequency"
+                "or 0 for the default"
             )
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
@@ -353,6 +342,22 @@ class IrregularSea(Force):
         if self.flat == 0.0:
             axes.append("yaw")
         return tuple(axes)
+
+    def wave_field(self) -> WaveField | None:
+        """Return the waves of the sea; None if it is calm.
+
+        With `course_kept` = 1 it is the elevation that the ship meets on her initial course, the
+        same at all places.
+        """
+        if self.significant_height == 0.0:
+            return None
+        q = self.values()
+        frequency, amplitude, phase, direction = components(q).T
+        number = interpreted(wave_number)(frequency, self.depth)
+        if self.course_kept:
+            frequency = frequency - number * np.cos(direction) * self.speed
+            number = 0.0 * number
+        return WaveField(amplitude, frequency, number, direction, phase + pi)
 
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the irregular sea whose random waves follow from the seed.

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, Self
 from boatsim.errors import BadInput
 from boatsim.physics.content import snake_case
 from boatsim.physics.param import LARGEST_FLOAT, UNSET, CheckedParameters
+from boatsim.physics.waves.field import WaveField
 
 # groups of numbers of a vessel that may be estimates
 REFINED_GROUPS = ("damping", "thrust", "lag", "mass_centre", "inertia", "added_mass", "restoring")
@@ -281,6 +282,14 @@ class Effect(CheckedParameters):
         It is empty for calm water, and for effects other than waves. The effect has all parameters.
         """
         return ()
+
+    def wave_field(self) -> WaveField | None:
+        """Return the waves of the effect, whose elevation is known at any place and time.
+
+        It is None for calm water, and for effects without an elevation. The effect has all
+        parameters.
+        """
+        return None
 
     def has_current_derived_codes(self, vessel: "Boat") -> bool:
         """Return whether the numeric codes derived from a vessel equal those that the effect holds.

@@ -21,6 +21,7 @@ CHANNEL_NAME = re.compile(r"[\w.+-]{1,60}")
 RESERVED_COLUMNS = (
     "t_s",
     "contacts",
+    "wave_elevation_m",
     *POSE,
     *RATES,
     *map("force_{}".format, COMPONENTS.values()),

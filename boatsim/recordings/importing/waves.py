@@ -11,12 +11,12 @@ from pydantic import Field, model_validator
 
 from boatsim.files import Table
 from boatsim.physics.base import Array
-from boatsim.physics.particulars import GRAVITY
+from boatsim.physics.debugging import interpreted
+from boatsim.physics.waves.dispersion import wave_number
 
 # Share of the number of probes that is added to the normal equations, so that frequencies at which
 # the probes stand half a wavelength apart get no large waves of opposite signs
 REGULARISATION = 0.02
-NEWTON = 30  # iterations for the wave number, which converge within ten
 PAD = 0.5  # share of the duration by which a record is continued, so that waves do not wrap around
 
 
@@ -48,27 +48,6 @@ class WaveProbes(Table):
         return self
 
 
-def wave_number(frequency: Array, depth: float) -> Array:
-    """Return the wave number of linear waves, by Newton's method on w^2 = g k tanh(k h).
-
-    Args:
-        frequency: Angular frequencies (N,) [rad/s], at least 0.
-        depth: Depth of the water [m].
-
-    Returns:
-        Wave numbers (N,) [rad/m].
-    """
-    deep = frequency**2 / GRAVITY
-    shallow = frequency / np.sqrt(GRAVITY * depth)
-    k = np.maximum(deep, shallow)
-    for _ in range(NEWTON):
-        t = np.tanh(k * depth)
-        excess = k * t - deep
-        slope = t + k * depth * (1.0 - t**2)
-        k = k - np.where(slope > 0.0, excess / np.where(slope > 0.0, slope, 1.0), 0.0)
-    return np.asarray(k)
-
-
 def wave_at(step: float, elevations: Sequence[Array], given: WaveProbes) -> Array:
     """Return the elevation of the wave that travels one way, at the place of the hull.
 
@@ -85,7 +64,7 @@ def wave_at(step: float, elevations: Sequence[Array], given: WaveProbes) -> Arra
     offsets = given.travels * (np.array(list(given.probes.values())) - given.place)
     frequencies: Array = np.asarray(np.fft.rfftfreq(length, step), dtype=np.float64)
     measured = np.array([np.fft.rfft(_padded(x, length)) for x in elevations])
-    k = wave_number(2.0 * np.pi * frequencies, given.depth)
+    k = interpreted(wave_number)(2.0 * np.pi * frequencies, given.depth)
     incident = np.exp(-1j * np.outer(offsets, k))
     inside = (frequencies >= given.low) & (frequencies <= given.high)
     if len(offsets) == 1:

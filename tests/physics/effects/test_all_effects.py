@@ -148,6 +148,7 @@ def drawn(kind: type[Effect], seed: int) -> Any:
             values["span"] / 2.5
         )  # a drive that is dead over all of its span is refused
     values.pop("cut", None)  # a sea without most of its energy is refused
+    values.pop("spreading", None)  # random directions have no mirror image with the same seed
     return kind(**values)
 
 

@@ -1,0 +1,1 @@
+"""Sea states: spectra, dispersion, directional spreading, wave components and their elevation."""
