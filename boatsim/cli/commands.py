@@ -684,7 +684,10 @@ def margins(
 def robustness(
     controllers: Annotated[
         list[str],
-        typer.Argument(metavar="CONTROLLER", help="Names of controllers, or .py files."),
+        typer.Argument(
+            metavar="CONTROLLER[,KEY=V,...]",
+            help="Controllers by name or .py file, with changed parameters.",
+        ),
     ],
     vessel: Annotated[
         str,

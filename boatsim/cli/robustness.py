@@ -33,7 +33,8 @@ def measure_robustness(
     """Run a robustness benchmark, print its tables and write its files.
 
     Args:
-        controllers: Names of controllers, or paths of .py files.
+        controllers: Names of controllers, or paths of .py files, with changed parameters:
+            `NAME,KEY=VALUE,...`.
         vessel: Name or path of a vessel.
         loads: Load conditions.
         boats: Number of drawn boats.
@@ -50,10 +51,11 @@ def measure_robustness(
         BadInput: An argument is wrong.
     """
     made: dict[str, Controller] = {}
-    for name in controllers:
-        made[Path(name).stem] = load_class("controller", name, named=True)()
-    if len(made) < len(controllers):
-        raise BadInput("controllers have the same name; allowed is each one once")
+    for text in controllers:
+        name, controller = _make_controller(text)
+        if name in made:
+            raise BadInput(f"controller {name} is given twice; allowed is once")
+        made[name] = controller
     boat = load_vessel(vessel, loads)
     sampled = [_parse_draw(text) for text in draws]
     ladders = dict(_parse_ladder(text) for text in disturbances)
@@ -68,6 +70,29 @@ def measure_robustness(
         write_page(found, folder)
     print_lines([f"written to {out}: {CSV}, {JSON}, {NAME}"])
     return Exit.MET
+
+
+def _make_controller(text: str) -> tuple[str, Controller]:
+    """Name in the tables and controller of NAME,KEY=VALUE,... Raises BadInput."""
+    name, *settings = text.split(",")
+    values: dict[str, object] = {}
+    for setting in settings:
+        key, equals, number = setting.partition("=")
+        try:
+            values[key.strip()] = float(number)
+        except ValueError:
+            equals = ""
+        if not equals:
+            raise BadInput(
+                f"controller {text}: {setting!r} is no parameter; allowed is NAME,KEY=NUMBER, such "
+                "as l1_joystick,pole=1"
+            )
+    found = load_class("controller", name, named=True)
+    try:
+        controller: Controller = found.from_settings(values)
+    except BadInput as error:
+        raise BadInput(f"controller {text}: {error}") from None
+    return ",".join([Path(name).stem, *settings]), controller
 
 
 def _parse_draw(text: str) -> SampledParameter:

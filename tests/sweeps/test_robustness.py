@@ -196,3 +196,5 @@ def test_a_disturbance_that_does_not_apply_is_named_with_its_reason() -> None:
     result = run_benchmark(one, load_vessel("jet_ski"), FEW, spread=0.0, ladders=ladders)
     assert result.disturbances == ["delay"]
     assert re.search("fewer than two drives", result.unavailable["motor_loss"])
+    with pytest.raises(BadInput, match="does not apply to jet_ski: .*fewer than two"):
+        run_benchmark(one, load_vessel("jet_ski"), FEW, ladders={"motor_loss": [0.5]})

@@ -120,6 +120,9 @@ def run_benchmark(
     signals = manoeuvre.signals
     for name in unavailable:
         chosen.pop(_disturbance(name))
+    if not chosen:
+        name, reason = next(iter(unavailable.items()))
+        raise BadInput(f"disturbance {name} does not apply to {vessel.name}: {reason}")
     total = len(loops) * (1 + len(chosen))
     nominal: dict[str, Array] = {}
     for number, loop in enumerate(loops):

@@ -18,9 +18,9 @@ from boatsim.sweeps.robustness.tables import (
     signal_in_words,
     surface_table,
 )
-from boatsim.view.formatting import join_words, name_in_words
+from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.html_page import render_template
-from boatsim.view.page_blocks import Figures, Items, Section, Table
+from boatsim.view.page_blocks import Figures, Items, Section, Table, Text
 from boatsim.view.svg_plots import Line, Panel, figure, legend
 
 NAME = "report.html"
@@ -87,7 +87,9 @@ def _sections(found: Robustness) -> list[Section]:
         block = Table("All values", table.head, table.rows, folded=True)
         looks = dict(zip(STYLES, found.controllers, strict=False))
         figures = Figures(legend(looks), _figures(found, name))
-        sections.append(Section(name, disturbance_in_words(name), [figures, block]))
+        title = capitalize(name_in_words(name))
+        meaning = Text(f"{capitalize(disturbance_in_words(name))}. Dashed: 95 % of the boats.")
+        sections.append(Section(name, title, [meaning, figures, block]))
     sections.append(
         Section(
             "draws",
@@ -124,7 +126,7 @@ def _survivor_panel(ladders: list[Ladder], ends: tuple[float, float], label: str
             shares.append(100.0 * point.share)
         lines.append(Line(look, np.array(x), np.array(shares), ladder.controller))
     required = np.full(2, 100.0 * REQUIRED)
-    lines.append(Line("goal", np.array(ends), required, "required"))
+    lines.append(Line("zero goal", np.array(ends), required, "required"))
     return Panel("survivors [%]", tuple(lines), ends, (0.0, 105.0), label, shape=2.0)
 
 
@@ -144,6 +146,6 @@ def _error_panel(
         at = np.array(x)
         lines.append(Line(look, at, np.array(medians), f"{ladder.controller} median"))
         lines.append(Line(f"{look} end", at, np.array(highs), f"{ladder.controller} 95 %"))
-    lines.append(Line("goal", np.array(ends), np.full(2, bar), "largest of a survivor"))
+    lines.append(Line("zero goal", np.array(ends), np.full(2, bar), "largest of a survivor"))
     title = f"rms error of {signal_in_words(signal)}"
     return Panel(title, tuple(lines), ends, (0.0, HIGHEST * bar), label, shape=2.0)

@@ -42,7 +42,7 @@ def limits_table(found: Robustness) -> TextTable:
                 words = f"{words} [{ladder.unit}]"
             rows.append([words, controller, *_limit_cells(ladder)])
     title = (
-        f"largest value that 95 % of {len(found.boats)} boats of {found.vessel.name} survive "
+        f"Largest value that 95 % of {len(found.boats)} boats of {found.vessel.name} survive "
         f"(seed {found.boats.seed})"
     )
     return TextTable("limits", title, head, rows, 2)
@@ -58,19 +58,18 @@ def errors_table(found: Robustness) -> TextTable:
     for name in found.controllers:
         head += [f"{name} median", "95 %"]
     if len(found.controllers) == 2:
-        head.append("second - first, mean")
+        first, second = found.controllers
+        head.append(f"mean of {second} - {first}")
     rows = []
-    first = found.disturbances[:1]
-    for disturbance in first:
-        ladders = [found.ladder(name, disturbance) for name in found.controllers]
-        rows += _error_rows(found, "none", [ladder.points[0] for ladder in ladders], "")
+    ladders = [found.ladder(name, found.disturbances[0]) for name in found.controllers]
+    rows += _error_rows(found, "none", [ladder.points[0] for ladder in ladders], "")
     for disturbance in found.disturbances:
         ladders = [found.ladder(name, disturbance) for name in found.controllers]
         common = min(len(ladder.survived_points) for ladder in ladders)
         if common > 1:
             points = [ladder.points[common - 1] for ladder in ladders]
             rows += _error_rows(found, disturbance, points, ladders[0].unit)
-    title = "rms error at the largest value that all controllers survive"
+    title = "Rms error at the largest value that all controllers survive"
     return TextTable("errors", title, head, rows, 3)
 
 
