@@ -44,7 +44,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
     "Start here": ("demo",),
-    "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins"),
+    "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins", "robustness"),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
@@ -677,6 +677,73 @@ def margins(
 
     with trusted_content(content, trust, [vessel]):
         print_margins(controller, vessel, _split_loads(load))
+
+
+@app.command()
+@exits_with_code
+def robustness(
+    controllers: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="CONTROLLER[,KEY=V,...]",
+            help="Controllers by name or .py file, with changed parameters.",
+        ),
+    ],
+    vessel: Annotated[
+        str,
+        typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Vessel whose boats are drawn."),
+    ],
+    load: Load = None,
+    boats: Annotated[int, typer.Option(min=1, metavar="N", help="Number of drawn boats.")] = 200,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Random seed of draws and sensor noise.")
+    ] = 0,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LAW(...)",
+            help="Draw a number of the vessel differently, such as body.mass=uniform(4,6). "
+            "Repeatable.",
+        ),
+    ] = None,
+    spread: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="FACTOR",
+            help="Factor of the usual spread of the boats; 0: all as in the vessel file.",
+        ),
+    ] = 1.0,
+    disturbance: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=V,V,...]",
+            help="Only this disturbance, with these values, such as delay=0.1,0.2. Repeatable "
+            "[default: all].",
+        ),
+    ] = None,
+    out: OutFolder = Path("out/robustness"),
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Find the largest disturbances that 95 % of randomly drawn boats survive under controllers.
+
+    Delay, lags, thrust, wind, waves, sensor noise and the loss of a motor grow step by step.
+    """
+    from boatsim.cli.robustness import measure_robustness
+
+    with trusted_content(content, trust, [vessel]):
+        return measure_robustness(
+            controllers,
+            vessel,
+            _split_loads(load),
+            boats,
+            seed,
+            draw or [],
+            spread,
+            disturbance or [],
+            out,
+        )
 
 
 @app.command()

@@ -305,6 +305,25 @@ def test_margins_on_a_vessel_are_analytic_and_simulated() -> None:
     assert turn[0].split()[-4] == "0.156" and abs(float(turn[0].split()[-2])) < 5.0
 
 
+def test_robustness_prints_and_writes_the_largest_value_survived(tmp_path: Path) -> None:
+    words = ["robustness", "pid_autopilot", "--vessel", "joystick_boat", "--boats", "3"]
+    result = boatsim(*words, "--disturbance", "delay=0.05,2", "--out", str(tmp_path / "out"))
+    assert result.exit_code == 0 and "Largest value that 95 % of 3 boats" in result.stdout
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "robustness.csv",
+        "robustness.json",
+        "report.html",
+    }
+    for wrong, hint in (("dely", "did you mean 'delay'"), ("delay=x", "'x' is no value")):
+        bad = boatsim(*words, "--disturbance", wrong, "--out", str(tmp_path / "bad"))
+        assert bad.exit_code == 2 and hint in bad.stderr and not (tmp_path / "bad").exists()
+    for wrong, hint in (("kq=1", "did you mean 'kp'"), ("kp=x", "allowed is NAME,KEY=NUMBER")):
+        bad = boatsim("robustness", f"pid_autopilot,{wrong}", *words[2:])
+        assert bad.exit_code == 2 and hint in bad.stderr
+    missing = boatsim(*words, "--draw", "body.mas=uniform(1,2)")
+    assert missing.exit_code == 2 and "did you mean 'body.mass'" in missing.stderr
+
+
 def test_version() -> None:
     assert boatsim("--version").stdout.split() == ["boatsim", __version__]
 

@@ -10,6 +10,7 @@ from boatsim.control.adaptive import LoopChannel, PiecewiseConstant
 from boatsim.control.base import LowPass
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class
+from boatsim.physics.vessel import load_vessel
 
 PERIOD, SERVO = 0.08, 0.06  # [s]
 YAW = LoopChannel(
@@ -131,3 +132,26 @@ def test_shipped_joystick_controller_prints_the_published_norm() -> None:
     assert [r.norm for r in rows if r.channel == "yaw"][0] == pytest.approx(0.616, abs=5e-4)
     # with ideal actuators; the published 0.37, 0.32 and 0.22 s contain a lag of 0.06 s
     assert [round(r.delay_s, 2) for r in rows if r.channel == "yaw"] == [0.43, 0.37, 0.27]
+
+
+def test_gains_from_lags_follow_the_simc_rule_and_meet_the_norm_condition() -> None:
+    """S. Skogestad 2003: bandwidth 1 / (2 theta); at half the input gain the norm is 2 / e / pole."""
+    kind = load_class("controller", "l1_joystick_lag")
+    for lag, delay in ((0.15, 0.0), (0.8, 0.4)):
+        made = kind(motor_lag=lag, command_delay=delay)
+        theta = 0.5 * made.period + lag + delay + 0.3
+        assert made.yaw_bandwidth == pytest.approx(0.5 / theta)
+        norms = {r.channel: r.norm * r.needed for r in margins.stability_margins(made)[::-1]}
+        assert norms["yaw"] == pytest.approx(2.0 / exp(1.0), abs=1e-3)
+        assert norms["surge"] < 1.0
+
+
+def test_gains_that_are_given_replace_those_of_the_rule() -> None:
+    made = load_class("controller", "l1_joystick_lag")(pole=0.7)
+    assert made.pole == 0.7 and made.surge_bandwidth == pytest.approx(1.2 * 0.7)
+    assert made.yaw_bandwidth == load_class("controller", "l1_joystick_lag")().yaw_bandwidth
+
+
+def test_the_motor_lag_of_the_rule_is_that_of_the_scale_boat() -> None:
+    lag = load_vessel("joystick_boat").effect("thrust_lag")
+    assert load_class("controller", "l1_joystick_lag")().motor_lag == lag.time_constant

@@ -167,6 +167,12 @@ def test_corrected_controller_with_a_speed_sensor_meets_the_thesis_requirements_
         assert not over(mean([seen]), REQUIRED[test.split("_")[0]])
 
 
+@EACH_TEST
+def test_gains_from_known_lags_meet_the_bars_of_the_corrected_controller(test: str) -> None:
+    case = scenario.load(shipped(test), {"controller": {"use": "l1_joystick_lag"}})
+    assert not over(mean([requested_metrics(run(case))]), CORRECTED[test.split("_")[0]])
+
+
 @pytest.mark.parametrize("test", TESTS[:4])
 def test_beam_wind_does_not_turn_a_sway(test: str) -> None:
     assert not over(mean_of(shipped(test, "wind"), FEW), CORRECTED["sway_wind"])
