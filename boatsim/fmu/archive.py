@@ -5,7 +5,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
@@ -67,7 +67,7 @@ def write_fmu(
         raise NoCompiler(f"an FMU contains a binary: {error}") from None
     program = Program(with_surroundings(vessel))
     variables = vessel_variables(program)
-    files = _text_files(program, variables, fmi_version, step)
+    files = text_files(program, variables, fmi_version, step)
     identifier = model_identifier(vessel.name)
     place = _binary_path(fmi_version, identifier)
     binary = _compile(files, fmi_version, command)
@@ -86,10 +86,23 @@ def model_identifier(name: str) -> str:
     return found
 
 
-def _text_files(
-    program: Program, variables: list[Variable], fmi_version: str, step: float
+def text_files(
+    program: Program, variables: Sequence[Variable], fmi_version: str, step: float
 ) -> Mapping[str, str]:
-    """Path in the archive -> text of its description and source."""
+    """Return the description and the C source of an FMU.
+
+    Args:
+        program: The compiled program of the vessel, with its surroundings.
+        variables: The variables of the FMU in the order of their value references.
+        fmi_version: "3" or "2".
+        step: Integration step [s].
+
+    Returns:
+        Text of each file by its path in the archive.
+
+    Raises:
+        NotTranslatable: A law has no C form.
+    """
     vessel = program.vessel
     identifier = model_identifier(vessel.name)
     interface = f"fmi{fmi_version}.c"

@@ -20,7 +20,7 @@ DEFAULT_DURATION = 60.0  # [s] proposed length of a simulation: some lengths of 
 
 @dataclass(frozen=True)
 class ModelInformation:
-    """What the description of an FMU states besides its variables.
+    """Facts of an FMU that its description states in addition to the variables.
 
     Attributes:
         name: Name of the vessel.
@@ -52,7 +52,7 @@ def fmi3_description(model: ModelInformation, variables: Sequence[Variable]) -> 
     """Return the modelDescription.xml of FMI 3.0 for co-simulation and model exchange.
 
     Args:
-        model: What the description states besides the variables.
+        model: Facts that the description states in addition to the variables.
         variables: All variables in the order of their value references.
     """
     root = _root(model, "3.0", "instantiationToken")
@@ -95,7 +95,7 @@ def fmi2_description(model: ModelInformation, variables: Sequence[Variable]) -> 
     """Return the modelDescription.xml of FMI 2.0 for co-simulation, without derivatives.
 
     Args:
-        model: What the description states besides the variables.
+        model: Facts that the description states in addition to the variables.
         variables: All variables in the order of their value references.
     """
     root = _root(model, "2.0", "guid")
