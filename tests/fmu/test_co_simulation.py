@@ -1,5 +1,8 @@
 """An FMU in co-simulation moves as the compiled engine does, for FMI 3.0 and 2.0."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -268,3 +271,32 @@ def test_a_motion_that_diverges_is_an_error(fmu: Make) -> None:
         with pytest.raises(Exception, match="fmi3Error|status"):
             boat.step(0.0, 1.0)
         assert boat.messages[-1].startswith("the motion is no longer finite at t = 1 s")
+
+
+@pytest.mark.slow
+def test_the_example_steers_a_boat_to_its_heading_as_the_page_shows(tmp_path: Path) -> None:
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [sys.executable, root / "examples" / "fmu" / "couple.py", "--out", tmp_path],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(root)},
+    )
+    assert done.stdout in (root / "docs" / "fmu.md").read_text()
+
+
+@pytest.mark.slow
+def test_a_saved_vessel_with_an_effect_that_was_found_is_exported_with_it(
+    tmp_path: Path, fmu: Make
+) -> None:
+    effect = {"use": "thrust_imbalance", "fraction": 0.3}
+    vessel = load_vessel("trial_boat")
+    patched = vessel.with_effect(effect).replace(found=("thrust_imbalance",))
+    patched.save(tmp_path / "patched")
+    again = load_vessel(str(tmp_path / "patched"))
+    commands = random_commands(vessel, 20)
+    found = simulated(fmu(again), commands, INTERVAL, names_of_outputs(again))
+    expected = engine_run(patched, commands)
+    np.testing.assert_allclose(found, expected, rtol=SAME, atol=SAME)
+    assert np.abs(expected - engine_run(vessel, commands)).max() > 1e-3
