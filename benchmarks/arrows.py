@@ -27,7 +27,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "recordings control",
     "simulate",
     "learn",
-    "metrics warp",
+    "metrics warp fmu",
     "view",
     "drive",
     "diagnosis",
@@ -44,6 +44,7 @@ ABOUT = {  # captions of the folders in the picture
     "learn": "tasks for learners",
     "metrics": "metrics of a run",
     "warp": "boats on a GPU",
+    "fmu": "boats elsewhere",
     "view": "rerun and pages",
     "drive": "hands on the sticks",
     "diagnosis": "what was left out",
@@ -179,6 +180,7 @@ COLOURS = (
     "#1f7f9c",
     "#768290",
     "#a3722f",
+    "#5c8a4a",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

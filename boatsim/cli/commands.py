@@ -927,9 +927,34 @@ def import_(
         return import_log(log, out, map, propose, vessel, _split_loads(load))
 
 
-@app.command()
+class ExportGroup(TyperGroup):
+    """Group `boatsim export`; without the name of a format a recording is written as MCAP."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Return the remaining arguments, which begin with the name of a format.
+
+        Args:
+            ctx: Context of the command line.
+            args: Arguments after `boatsim export`.
+        """
+        if not args or args[0] not in (*self.commands, "--help"):
+            args = ["mcap", *args]
+        return super().parse_args(ctx, args)
+
+
+exporting = typer.Typer(
+    name="export",
+    cls=ExportGroup,
+    help="Write a recording as MCAP or a vessel as an FMU, for other programs.\n\n"
+    "boatsim export RUN is short for boatsim export mcap RUN.",
+    rich_markup_mode=None,
+)
+app.add_typer(exporting)
+
+
+@exporting.command("mcap")
 @exits_with_code
-def export(
+def export_mcap(
     run: OneRun,
     out: Annotated[
         Path | None,
@@ -945,6 +970,36 @@ def export(
 
     with trusted_content(content, trust, [run, vessel]):
         return export_recording(recording_file(run), out, vessel, _split_loads(load))
+
+
+@exporting.command("fmu")
+@exits_with_code
+def export_fmu(
+    vessel: Annotated[
+        str, typer.Argument(metavar="VESSEL", help="Name, folder or file of a vessel.")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.fmu", help="File to write [default: out/VESSEL.fmu]."),
+    ] = None,
+    fmi: Annotated[
+        Literal["3", "2"],
+        typer.Option(
+            help="3: FMI 3.0, co-simulation and model exchange; 2: FMI 2.0, co-simulation."
+        ),
+    ] = "3",
+    step: Annotated[
+        float, typer.Option(metavar="S", help="Integration step [s]; that of a scenario is 0.02.")
+    ] = 0.02,
+    load: Load = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Write a vessel as a functional mock-up unit (FMU), for other simulators."""
+    from boatsim.cli.exporting import export_vessel
+
+    with trusted_content(content, trust, [vessel]):
+        return export_vessel(vessel, out, fmi, step, _split_loads(load))
 
 
 @app.command()

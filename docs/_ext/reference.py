@@ -114,6 +114,12 @@ def _command_pages() -> Iterator[tuple[str, str]]:
             )
             help_lines = command.get_help(context).splitlines()
             page = [f"# boatsim {name}", "", "```text", *help_lines, "```", ""]
+            for inner, part in getattr(command, "commands", {}).items():
+                below = part.make_context(
+                    inner, [], parent=context, resilient_parsing=True, terminal_width=100
+                )
+                help_lines = part.get_help(below).splitlines()
+                page += [f"## {name} {inner}", "", "```text", *help_lines, "```", ""]
             yield f"commands/{name}", "\n".join(page)
 
 

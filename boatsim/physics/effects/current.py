@@ -33,6 +33,7 @@ class Current(WaterFlow):
     ruled_out_by: ClassVar = {"still_water": (True,), "no_water": (True,)}
     needs: ClassVar = ("surge", "sway")
     of_surroundings: ClassVar[bool] = True
+    exogenous: ClassVar = ("north", "east")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"
     shown_by: ClassVar[str] = "drifting, and runs on opposite headings"
     water_velocity: ClassVar = water_velocity

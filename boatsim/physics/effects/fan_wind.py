@@ -74,6 +74,7 @@ class FanWind(Force):
         "side": "A_y",
         "arm": "l",
     }
+    exogenous: ClassVar = ("speed", "toward")
     words: ClassVar[str] = "a steady wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"

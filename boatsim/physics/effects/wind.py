@@ -52,6 +52,7 @@ class Wind(Force):
     ruled_out_by: ClassVar = {"indoors": (True,)}
     needs: ClassVar = ("surge", "sway")
     of_surroundings: ClassVar[bool] = True
+    exogenous: ClassVar = ("force", "toward")
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = (

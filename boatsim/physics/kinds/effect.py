@@ -65,6 +65,9 @@ class Effect(CheckedParameters):
     adds_to: ClassVar[Mapping[str, str]] = {}
     # whether it acts from the surroundings, as wind does: the vessel does not limit its size
     of_surroundings: ClassVar[bool] = False
+    # parameters that may change while a vessel moves, as the velocity of a current does: they are
+    # inputs of a vessel that is exported to another simulator
+    exogenous: ClassVar[tuple[str, ...]] = ()
     # parameters of its strength, zero if absent; empty: all fitted parameters
     strength: ClassVar[tuple[str, ...]] = ()
     # parameters that limit a quantity: the effect is absent at an infinite value of them

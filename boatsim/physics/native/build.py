@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -18,7 +18,8 @@ from boatsim.errors import BadInput, BoatsimWarning
 # Loops over the small matrices of the filter are vectorised and unrolled, as -O3 does, which takes
 # longer to compile for little more speed.
 LOOPS = ("-fvect-cost-model", "-fpeel-loops")
-FLAGS = ("-std=gnu11", "-O2", *LOOPS, "-march=native", "-fPIC", "-shared", "-w")
+PORTABLE = ("-std=gnu11", "-O2", *LOOPS, "-fPIC", "-shared", "-w")
+FLAGS = (*PORTABLE, "-march=native")
 # No fused multiplication and addition, so that the numbers are those of numba. The other two drop
 # side effects of operations that nobody reads.
 EXACT = ("-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
@@ -141,16 +142,31 @@ def compile_library(source: str, path: Path, command: str) -> None:
         place = Path(folder)
         text, new = place / "program.c", place / "program.so"
         text.write_text(source, encoding="utf-8")
-        given = [command, *FLAGS, *EXACT, "-o", str(new), str(text), "-lm"]
-        try:
-            done = subprocess.run(given, capture_output=True, text=True, timeout=LONGEST)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise NoCompiler(f"{command}: {error}") from None
-        if done.returncode:
-            raise NoCompiler(f"{command}: {done.stderr.strip()[:200]}")
+        run_compiler(command, FLAGS, text, new)
         sealed = place / "digest"
         sealed.write_text(hashlib.sha256(new.read_bytes()).hexdigest())
         with suppress(OSError):  # where it cannot be kept, the next process builds it again
             shutil.copy(text, path.with_suffix(".c"))
         new.replace(path)
         sealed.replace(_seal(path))
+
+
+def run_compiler(command: str, flags: Sequence[str], source: Path, library: Path) -> None:
+    """Compile a C file to a shared library.
+
+    Args:
+        command: Path of the C compiler.
+        flags: Flags in addition to those that keep the numbers of numba.
+        source: The C file.
+        library: The library to write.
+
+    Raises:
+        NoCompiler: The compiler cannot be run, or refuses the source.
+    """
+    given = [command, *flags, *EXACT, "-o", str(library), str(source), "-lm"]
+    try:
+        done = subprocess.run(given, capture_output=True, text=True, timeout=LONGEST)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NoCompiler(f"{command}: {error}") from None
+    if done.returncode:
+        raise NoCompiler(f"{command}: {done.stderr.strip()[:200]}")
