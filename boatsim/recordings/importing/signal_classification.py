@@ -97,6 +97,7 @@ NUMBERED = {
 }  # other words in the name of a shaft speed
 ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".split())
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
+LEAST_SCALED = 1e5  # [1e-7 deg] 0.01 degrees; smaller numbers are of no place in this unit
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -337,7 +338,7 @@ def _degrees(
         limit = 90.0
     if largest <= limit:
         return Classification(name, signal, column, "deg", score, "", tokens)
-    if largest <= limit * 1e7:
+    if LEAST_SCALED < largest <= limit * 1e7:
         return Classification(
             name, signal, column, "deg * 1e-7", score, "in 1e-7 degrees by its range", tokens
         )
