@@ -14,8 +14,13 @@ from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
 from boatsim.recordings.importing.effort_allocation import EFFORTS, allocation_lines
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
+from boatsim.recordings.importing.motion_begin import begins_by_motion
 from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
-from boatsim.recordings.importing.several_logs import file_spans, files_with_unrelated_clocks
+from boatsim.recordings.importing.several_logs import (
+    begins_by_shared_clock,
+    file_spans,
+    files_with_unrelated_clocks,
+)
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
@@ -183,7 +188,7 @@ def propose_map(
         f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"',
         *([] if measured else _rate_lines((*used, *driven))),
         "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
-        *_begin_lines(log),
+        *_begin_lines(log, best),
         "",
         *body,
         "",
@@ -265,17 +270,32 @@ def _without_contradictions(
     return kept, lines
 
 
-def _begin_lines(log: Log) -> list[str]:
-    """Lines that state when the further files of a run begin, if their clocks do not show it."""
+def _begin_lines(log: Log, best: Mapping[str, Sequence[Classification]]) -> list[str]:
+    """Lines that state when the further files of a run begin, if their times are no UTC."""
     spans = file_spans(log)
     if len(spans) < 2:
         return []
     first = next(iter(spans))
-    lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
-    for name in files_with_unrelated_clocks(spans, {}):
-        lines.append(f"begins.{toml_key(name)} = 0.0  # CHECK: no common clock, 0 is a guess")
-    if len(lines) == 1:
+    unrelated = files_with_unrelated_clocks(spans, {})
+    if not unrelated:
         return []
+    shared = begins_by_shared_clock(spans)
+    by_motion = begins_by_motion(best, {name: span.begin for name, span in spans.items()})
+    lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
+    for name in unrelated:
+        seconds, why = 0.0, "CHECK: no common clock, 0 is a guess"
+        if name in shared:
+            seconds, why = (
+                shared[name],
+                f"by its times, which are of one clock with those of {first}",
+            )
+        elif name in by_motion:
+            seconds = by_motion[name].seconds
+            why = (
+                "CHECK: by the turning that both files show (correlation "
+                f"{by_motion[name].correlation:.2f})"
+            )
+        lines.append(f"begins.{toml_key(name)} = {seconds!r}  # {why}")
     return lines
 
 

@@ -228,8 +228,8 @@ def classify_signal(
         body: The vessel.
     """
     values = signal.values[np.isfinite(signal.values)]
-    if len(values) < MIN_SAMPLES:
-        return None
+    if len(values) < MIN_SAMPLES or np.array_equal(signal.values, signal.t):
+        return None  # the clock of a table is no signal
     words = tokenize_name(name) or [""]  # a name may have no word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
