@@ -12,7 +12,11 @@ from boatsim.files import toml_key, toml_value
 from boatsim.physics.signals import RATES
 from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
-from boatsim.recordings.importing.effort_allocation import EFFORTS, allocation_lines
+from boatsim.recordings.importing.effort_allocation import (
+    EFFORTS,
+    allocation_lines,
+    mixing_lines,
+)
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.motion_begin import begins_by_motion
 from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
@@ -406,9 +410,12 @@ def _command_lines(
             lines.append(_channel_line(name, g, None))
         return lines, moving
     taken: list[Classification] = []
-    chosen = _match_channels(best, drives, moving, turning)
-    allocated = {}
-    if not chosen:
+    allocated, mixed = mixing_lines(drives, moving or best.get("stick", []), turning)
+    taken += mixed
+    chosen = {}
+    if not allocated:
+        chosen = _match_channels(best, drives, moving, turning)
+    if not chosen and not allocated:
         allocated = allocation_lines(drives, best)
         taken += [best[kind][0] for kind in EFFORTS if allocated and kind in best]
     for drive in drives:
@@ -428,10 +435,32 @@ def _command_lines(
         taken.append(g)
         g, unit_note = unit.with_unit(g, drive)
         lines.append(_channel_line(drive.name, g, drive, sense) + unit_note + why)
+    lines += _side_lines(drives, chosen, turning)
     for g in moving:
         if g not in taken:
             lines.append(_unused_line(g, drives))
     return lines, taken
+
+
+def _side_lines(
+    drives: Sequence[VesselChannel],
+    chosen: Mapping[str, tuple[Classification, str]],
+    turning: Turning,
+) -> list[str]:
+    """A comment if the boat turns to the other side than the commands of fixed drives ask for."""
+    terms = []
+    for drive in drives:
+        if drive.lever and drive.name in chosen:
+            terms.append((chosen[drive.name][0], float(np.sign(drive.lever))))
+    if len({sign for _, sign in terms}) < len(SIDED):
+        return []
+    sense = turning.correlation(*terms)
+    if sense > -MIN_CORRELATION:
+        return []
+    return [
+        "# CHECK: the boat turns to the other side than these commands ask for (correlation "
+        f"{sense:+.2f}): are two drives exchanged, or is the heading counted counterclockwise?"
+    ]
 
 
 class _RevolutionUnit:
