@@ -16,8 +16,8 @@ CLOCK = re.compile(
     r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(
-    r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|millis|micros|s|ms|us|µs|ns|usec|msec|nsec)"
-    r"[\])]*$"
+    r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|millis|micros|s|ms|us|µs|ns|usec|msec"
+    r"|nsec)[\])]*$"
 )
 UNIT_WORDS = {
     **dict.fromkeys(("second", "seconds", "sec", "secs"), "s"),

@@ -33,6 +33,7 @@ from boatsim.recordings.importing.signal_classification import (
     Classification,
     classify_signals,
     has_opposite_sense,
+    has_stated_unit,
     side_from_tokens,
     tokenize_name,
 )
@@ -42,6 +43,7 @@ from boatsim.recordings.importing.track import (
     rate_in_degrees,
     reason_not_measured,
     reason_poses_unusable,
+    speed_unit,
     track_of,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
@@ -173,7 +175,8 @@ def propose_map(
     if reason := reason_poses_unusable(log, best, "yaw" in dof):
         raise file_error(log.path, reason)
     track = track_of(best)
-    best, doubtful = _without_contradictions(_with_rate_unit(best), track)
+    best = _with_speed_units(_with_rate_unit(best), track)
+    best, doubtful = _without_contradictions(best, track)
     body, used = _motion_lines(log, best, dof, known)
     body += doubtful
     for column, expression in known.items():
@@ -254,6 +257,26 @@ def _with_rate_unit(
     kept = dict(best)
     if rates:
         kept["r_radps"] = rates
+    return kept
+
+
+def _with_speed_units(
+    best: Mapping[str, list[Classification]], track: Track | None
+) -> dict[str, list[Classification]]:
+    """Classified signals, in which the track shows the unit of speeds without one."""
+    kept = dict(best)
+    heading = next(iter(best.get("psi_rad", [])), None)
+    for column in ("u_mps", "v_mps"):
+        speeds = []
+        for g in best.get(column, []):
+            unit = ""
+            if not has_stated_unit(g.name, g.signal):
+                unit = speed_unit(column, g, track, heading)
+            if unit:
+                g = replace(g, word=unit, why=f"CHECK: in {unit} by the speed of the track")
+            speeds.append(g)
+        if speeds:
+            kept[column] = speeds
     return kept
 
 

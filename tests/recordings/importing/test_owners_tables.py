@@ -228,3 +228,70 @@ def test_a_table_with_many_cut_rows_is_refused(tmp_path):
     file.write_text("\n".join(lines))
     with pytest.raises(BadInput, match="cells; the header has 6 columns"):
         read(file)
+
+
+def test_a_clock_that_is_set_back_goes_on_and_late_or_doubled_rows_stay(tmp_path):
+    columns = columns_of_run()
+    back = np.where(np.arange(COUNT) >= 300, 5.0, 0.0)
+    columns["time"] = texts_of(RUN["t"] - back, "{:.3f}")
+    found, remarks = imported(tmp_path, lines_of(columns))
+    check_motion(found)
+    assert "the clock goes back by 4.9 s after sample 300, but the samples go on" in remarks
+    lines = lines_of(columns_of_run())
+    late = [*lines[:200], *lines[230:260], *lines[200:230], *lines[260:]]  # a block came late
+    found, remarks = imported(tmp_path, late)
+    check_motion(found)
+    assert "samples are logged after a later one" in remarks
+    doubled = [*lines[:300], *lines[250:300], *lines[300:]]
+    found, remarks = imported(tmp_path, doubled)
+    check_motion(found)
+    assert "clock goes back" not in remarks
+
+
+def test_local_positions_before_the_first_fix_are_left_out(tmp_path):
+    columns = columns_of_run()
+    del columns["lat"], columns["lon"]
+    rows = np.arange(COUNT)
+    columns["north_m"] = texts_of(np.where(rows < 30, 0.0, RUN["north"] + 150.0))
+    columns["east_m"] = texts_of(np.where(rows < 30, 0.0, RUN["east"] - 80.0))
+    found, remarks = imported(tmp_path, lines_of(columns))
+    assert "omitted 30 positions of 0, 0 before the first fix" in remarks
+    assert np.nanmin(found["x_m"]) > 100.0
+
+
+def test_positions_that_begin_at_the_origin_are_kept(tmp_path):
+    columns = columns_of_run()
+    del columns["lat"], columns["lon"]
+    columns["north_m"] = texts_of(RUN["north"] - RUN["north"][0])
+    columns["east_m"] = texts_of(RUN["east"] - RUN["east"][0])
+    found, remarks = imported(tmp_path, lines_of(columns))
+    assert found["x_m"][0] == 0.0 and "before the first fix" not in remarks
+
+
+def test_positions_that_came_in_bursts_go_back_to_the_rhythm_of_the_sensor(tmp_path):
+    columns = columns_of_run()
+    queue, shown, is_open, newest = list[int](), list[int](), False, 0
+    for row in range(COUNT):
+        if row % 2 == 0:
+            queue.append(row)
+        is_open |= row % 10 == 7
+        if is_open and queue:
+            newest = queue.pop(0)
+            is_open = bool(queue)
+        shown.append(newest)
+    for name in ("lat", "lon"):
+        columns[name] = [columns[name][row] for row in shown]
+    found, remarks = imported(tmp_path, lines_of(columns))
+    assert "repeat the one before and are not measurements" in remarks
+    assert "the sensor measured every 0.2 s, but the program read it late" in remarks
+    t = found.t + (RUN["t"][-1] - RUN["t"][0] - found.t[-1])
+    known = np.isfinite(found["x_m"]) & (t > 5.0)
+    spread = []
+    for delay in np.arange(0.0, 1.0, 0.05):  # the mean delay stays
+        off = 0.0
+        for name, truth in (("x_m", RUN["north"]), ("y_m", RUN["east"])):
+            off = off + np.std(
+                found[name][known] - np.interp(t[known] - delay, RUN["t"] - RUN["t"][0], truth)
+            )
+        spread.append(off)
+    assert min(spread) < 0.1

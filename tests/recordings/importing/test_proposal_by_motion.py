@@ -209,3 +209,15 @@ def test_drives_that_turn_the_boat_to_the_other_side_are_pointed_out():
     wrong = {"rpm_port": run["starboard"] / RPM, "rpm_starboard": run["port"] / RPM}
     text = proposed(log_of(run, **wrong))[1]
     assert "CHECK: the boat turns to the other side than these commands ask for" in text
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("kn", 3600 / 1852), ("kmh", 3.6)])
+def test_the_track_shows_the_unit_of_a_speed_without_one(unit, factor):
+    run = simulated()
+    noise = 0.02 * np.random.default_rng(3).normal(size=len(run["t"]))
+    table, text = proposed(log_of(run, surge_velocity=factor * (run["u"] + noise)))
+    assert table["columns"]["u_mps"] == f"surge_velocity * {unit}"
+    assert f"CHECK: in {unit} by the speed of the track" in text
+    half_wrong = 1.4 * (run["u"] + noise)  # neither m/s nor another unit
+    columns = proposed(log_of(run, surge_velocity=half_wrong))[0]["columns"]
+    assert columns["u_mps"] == "surge_velocity"
