@@ -206,7 +206,7 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
     """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        instances = vessel.names_of(kind.once_per) if kind.once_per else []
+        instances = single_subjects(kind, vessel)
         if len(instances) < fewest:
             yield _Source({"use": name}, kind, False)
             continue
@@ -217,6 +217,24 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
         yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
     for name in own:
         yield _Source({"use": name}, load_class("effect", name, named=True), True)
+
+
+def single_subjects(kind: type[Effect], vessel: Vessel) -> list[str]:
+    """Return the names of what an error of a single one may concern: effects, or actuators.
+
+    Args:
+        kind: Class of the effect, with `once_per`.
+        vessel: Vessel of the recordings.
+
+    Returns:
+        Instances of the effect `once_per`; of a channel effect the actuators on which it acts.
+        Empty for a class without `once_per`.
+    """
+    if not kind.once_per:
+        return []
+    if issubclass(kind, ChannelEffect):
+        return list(vessel.target_actuators(instantiate_neutral_effect(kind)))
+    return vessel.names_of(kind.once_per)
 
 
 def has_fittable_parameter(kind: type[Effect]) -> bool:
@@ -279,7 +297,7 @@ def missing_requirements(
     for fact, value in kind.required_facts.items():
         if facts.get(fact) != value:
             return f"only where {fact} = {str(value).lower()}"
-    if kind.once_per and len(vessel.names_of(kind.once_per)) < fewest:
+    if kind.once_per and len(single_subjects(kind, vessel)) < fewest:
         return f"fewer than {fewest} of {kind.once_per}"
     if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"

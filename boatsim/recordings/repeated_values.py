@@ -12,6 +12,8 @@ STALE_FACTOR = 5.0  # as many repeats as this times those expected by chance do 
 # With fewer separate parts of repeated samples the value must change at both ends of each: a vessel
 # that begins on a steady course ends it by a command
 MIN_PARTS = 5
+# Share of new values whose step is the resolution itself: more are of a sensor that hardly changes
+MAX_SMALLEST_STEPS = 0.2
 # Share of the usual step of a value that it makes next to stale samples; next to steady ones the
 # steps are near the resolution
 MIN_STEP_AROUND = 0.5
@@ -20,17 +22,32 @@ MIN_STEP_AROUND = 0.5
 def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return a mask (N,) of the rows in which a logger repeated measured values (N, C).
 
-    Rows count as repeated only if new values come at a regular period.
+    Rows count as repeated if new values come at a regular period, or if most rows repeat all values
+    although these usually change by far more than their resolution: messages that came in bursts.
     """
     new = np.append(True, (np.diff(fixes, axis=0) != 0.0).any(axis=1))
     gaps = np.diff(np.flatnonzero(new))
     none = np.zeros(len(fixes), dtype=np.bool_)
+    if _come_in_bursts(fixes, new):
+        return ~new
     if len(gaps) < MIN_GAPS or (usual := float(np.median(gaps))) < 2.0:
         return none
     regular = np.abs(gaps - usual) <= max(1.0, 0.1 * usual)
     if regular.mean() < MIN_REGULAR_SHARE:
         return none
     return ~new
+
+
+def _come_in_bursts(fixes: NDArray[np.float64], new: NDArray[np.bool_]) -> bool:
+    """Whether most rows repeat values (N, C) that usually change by more than their resolution."""
+    if new.sum() < MIN_GAPS or new.mean() > 1.0 - MAX_STALE_SHARE:
+        return False
+    for values in fixes[new].T:
+        steps = np.abs(np.diff(values))
+        moved = steps[steps > 0.0]
+        if not len(moved) or np.mean(steps < 1.5 * moved.min()) > MAX_SMALLEST_STEPS:
+            return False
+    return True
 
 
 def stale_rows(values: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -26,6 +26,15 @@ MAX_TUMBLING = 20.0
 IMPOSSIBLE_TURNING = 40.0
 # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
 MAX_NOISE = 0.15
+# [rad/s] scatter of a rate of turn, 3 deg/s: gyroscopes are twenty times better
+MAX_RATE_NOISE = 0.05
+# An angle moves by more than a turn and a half in one row where it is in degrees and wraps. An
+# angle in radians that is counted on does so in a gap, but not at this many times its usual rate
+MAX_LEAP_RATE = 3.0
+USUAL_RATE_PERCENTILE = 90.0  # of the rates from row to row
+# Numbers with one decimal or none: a resolution of 6 degrees if they were radians
+COARSEST = 0.1
+MIN_LEVELS = 10  # different values that show the resolution of a column
 # [rad] hulls stay below 57 degrees of roll; any roll worth recording exceeds 1 degree
 MAX_ROLL = 1.0
 # by which the course agrees better with the heading in one unit than in the other (mean resultant
@@ -84,10 +93,21 @@ def _in_degrees(columns: Mapping[str, Array], turns_over: bool) -> dict[str, int
             fastest = MAX_TURNING
             if name == "p_radps" and turns_over:
                 fastest = MAX_TUMBLING
-            index = find_rate_in_degrees(t, values, others.get(ANGLES[name]), fastest)
+            angle = _angle_at(columns, ANGLES[name], t)
+            index = find_rate_in_degrees(t, values, angle, fastest)
         if index is not None:
             found[name] = int(rows[index])
     return found
+
+
+def _angle_at(columns: Mapping[str, Array], name: str, t: Array) -> Array | None:
+    """An unwrapped angle (N,) at times (N,) [s], between its own samples; None without samples."""
+    if name not in columns:
+        return None
+    known = np.isfinite(columns[name])
+    if known.sum() < MIN_ROWS:
+        return None
+    return np.asarray(np.interp(t, columns["t_s"][known], np.unwrap(columns[name][known])))
 
 
 def _rows_with_values(
@@ -106,7 +126,8 @@ def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) 
     Recorded rates and the course made good decide by their ratio to the changes of the heading.
     Without them two independent signs are required: scatter that no compass has in radians,
     together with values beyond one turn; turning that no boat has; and a course that agrees better
-    with the heading if that is in degrees.
+    with the heading if that is in degrees. A craft that spins, whose heading is counted on over
+    hundreds of radians, shows the second one only.
 
     Args:
         t: Times (N,) [s].
@@ -117,7 +138,9 @@ def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) 
     largest = int(np.argmax(np.abs(steps))) + 1
     if _is_wrapped_in_radians(psi, steps):
         return None
-    if abs(steps[largest - 1]) > 3.0 * math.pi:  # radians wrap by 2 pi, degrees by 360
+    if _is_wrapped_in_radians(psi / DEGREES, steps / DEGREES):
+        return largest
+    if _leaps(t, steps, largest - 1):  # radians wrap by 2 pi, degrees by 360
         return largest
     if "r_radps" in signals:
         turned = cumulative_integral(t, signals["r_radps"])
@@ -140,6 +163,21 @@ def find_heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) 
     return None
 
 
+def _leaps(t: Array, steps: Array, at: int) -> bool:
+    """Whether a step of a heading is far beyond a turn, and its time does not explain it.
+
+    Args:
+        t: Times (N,) [s].
+        steps: Steps (N - 1,) of the heading from row to row.
+        at: Index of the largest step.
+    """
+    if abs(steps[at]) <= 3.0 * math.pi:
+        return False
+    rates = np.abs(steps) / np.diff(t)
+    usual = float(np.percentile(np.delete(rates, at), USUAL_RATE_PERCENTILE))
+    return bool(rates[at] > MAX_LEAP_RATE * usual)
+
+
 def _is_wrapped_in_radians(psi: Array, steps: Array) -> bool:
     """Whether a heading fills one turn in radians and wraps at its ends, as no heading in degrees.
 
@@ -158,8 +196,17 @@ def find_rate_in_degrees(
 ) -> int | None:
     """Decide whether a recorded angular rate (N,) is in degrees per second.
 
-    Returns a row that shows it, None for radians per second. `fastest` is the largest rate [rad/s]
-    that the vessel sustains.
+    The changes of the angle decide. Without them two independent signs are required: a size that no
+    vessel sustains, and scatter or a resolution that no gyroscope has in radians per second.
+
+    Args:
+        t: Times (N,) [s].
+        rate: Rates (N,) as written.
+        angle: Angle (N,) of which this is the rate, unwrapped; None without one.
+        fastest: Largest rate [rad/s] that the vessel sustains.
+
+    Returns:
+        A row that shows it, None for radians per second.
     """
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
@@ -168,9 +215,20 @@ def find_rate_in_degrees(
             return largest
         if _is_near(ratio, 1.0):
             return None
-    if np.percentile(np.abs(rate), 75) > fastest:
+    sustained = float(np.percentile(np.abs(rate), 75))
+    if sustained <= fastest:
+        return None
+    is_coarse = _is_rounded(rate) or _noise(np.diff(rate)) > MAX_RATE_NOISE
+    if is_coarse or sustained > IMPOSSIBLE_TURNING:
         return largest
     return None
+
+
+def _is_rounded(values: Array) -> bool:
+    """Whether values (N,) have one decimal or none, and enough levels to show it."""
+    levels = np.unique(values)
+    steps = levels / COARSEST
+    return len(levels) >= MIN_LEVELS and bool(np.all(np.abs(steps - np.round(steps)) < 1e-6))
 
 
 def find_roll_in_degrees(
@@ -248,6 +306,8 @@ def _course_agreement(t: Array, psi: Array, x: Array, y: Array) -> float:
     """How much better the course agrees with a heading if that is in degrees, -1 to 1.
 
     The agreement is the mean resultant length of the angle between them, weighted by the distance.
+    It must be better than that of radians and than that of any constant heading: a spinning craft
+    that drifts one way agrees with a heading that hardly changes.
     """
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
@@ -258,7 +318,8 @@ def _course_agreement(t: Array, psi: Array, x: Array, y: Array) -> float:
         return 0.0
     degrees = np.sum(distance * np.exp(1j * (course - bow / DEGREES)))
     radians = np.sum(distance * np.exp(1j * (course - bow)))
-    return float(abs(degrees) - abs(radians)) / total
+    constant = np.sum(distance * np.exp(1j * course))
+    return float(abs(degrees) - max(abs(radians), abs(constant))) / total
 
 
 def _wrap(angle: Array) -> Array:
@@ -268,9 +329,18 @@ def _wrap(angle: Array) -> Array:
 def _heading_noise(psi: Array) -> float:
     """Standard deviation of a heading [rad] from its differences, robust to outliers.
 
+    A heading that is counted on may turn by more than half a turn from row to row.
+    """
+    differences = np.diff(psi)
+    return min(_noise(differences), _noise(_wrap(differences)))
+
+
+def _noise(differences: Array) -> float:
+    """Standard deviation of a signal from its differences (N,), robust to outliers.
+
     Differences of higher order contain less of the motion; the smallest estimate counts.
     """
-    found, differences = math.inf, _wrap(np.diff(psi))
+    found = math.inf
     for order in NOISE_ORDERS:
         differences = np.diff(differences)
         if len(differences):

@@ -64,14 +64,26 @@ def floated(
     inertia: float = 1.0,
     gains: Array | None = None,
     slope: tuple[float, float] = (0.0, 0.0),
+    lags: Array | None = None,
+    delays: Array | None = None,
 ) -> Recording:
-    """A recording of the craft with other numbers than those of its data sheet."""
+    """A recording of the craft with other numbers than those of its data sheet.
+
+    `lags` are time constants of the fans [s], and `delays` their dead times in rows.
+    """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
     x, y, angle = np.array(list(FANS.values())).T
     strengths = np.ones(len(FANS)) if gains is None else gains
+    lags = np.zeros(len(FANS)) if lags is None else lags
+    ordered = commands.copy()
+    for i, late in enumerate(np.zeros(len(FANS), int) if delays is None else delays):
+        ordered[late:, i] = commands[: ROWS - late, i]
+        ordered[:late, i] = commands[0, i]
+    fading = np.exp(-1.0 / RATE / np.maximum(lags, 1e-9))
 
-    def rates(s: Array, _: float, thrust: Array) -> list[float]:
+    def rates(s: Array, time: float, order: Array, begin: Array) -> list[float]:
+        thrust = order + (begin - order) * np.exp(-time / np.maximum(lags, 1e-9))
         X, Y = thrust @ np.cos(angle), thrust @ np.sin(angle)
         N = thrust @ (x * np.sin(angle) - y * np.cos(angle))
         c, k = np.cos(s[2]), np.sin(s[2])
@@ -79,21 +91,22 @@ def floated(
         east = (X * k + Y * c) / MASS + GRAVITY * slope[1]
         return [s[3], s[4], s[5], north, east, N / (inertia * INERTIA)]
 
-    s, poses = np.zeros(6), []
-    for command in commands:
+    s, poses, thrust = np.zeros(6), [], strengths * ordered[0]
+    for order in strengths * ordered:
         poses.append(s[:3])
-        s = odeint(rates, s, [0.0, 1.0 / RATE], args=(strengths * command,), rtol=1e-8)[-1]
+        s = odeint(rates, s, [0.0, 1.0 / RATE], args=(order, thrust), rtol=1e-8)[-1]
+        thrust = order + (thrust - order) * fading
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [3e-4, 3e-4, 2e-3]
     signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
     signals |= {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
     return Recording(f"flight_{seed}", np.arange(ROWS) / RATE, signals, Notes())
 
 
-def ranked(*recordings: Recording) -> Ranking:
+def ranked(*recordings: Recording, tested: tuple[str, ...] = TESTED) -> Ranking:
     program = Program(CRAFT, candidate_library(CRAFT).compiled_effects)
     mapped = [map_recording(recording, program) for recording in recordings]
     problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
-    return select_and_rank_candidates(problem, TESTED)
+    return select_and_rank_candidates(problem, tested)
 
 
 def test_no_candidate_of_a_craft_without_water_needs_water():
@@ -110,6 +123,7 @@ def test_slope_and_yaw_inertia_are_candidates_only_without_water():
 
 def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
+    names |= {f"drive_lag_{fan}_N" for fan in FANS} | {f"drive_delay_{fan}_N" for fan in FANS}
     assert names <= set(candidate_library(CRAFT).tested_names)
     two = candidate_library(vessel.load_vessel("trial_boat"))
     assert "fewer than 3" in two.inapplicable["drive_gain_error"]
@@ -158,3 +172,27 @@ def test_what_differs_from_the_data_sheet_is_found_with_its_size(case: str):
 
 def test_nothing_is_found_where_the_data_sheet_is_right():
     assert ranked(floated(3), floated(4)).named == ()
+
+
+DYNAMICS = (
+    "thrust_lag",
+    "command_delay",
+    *(f"drive_lag_{fan}_N" for fan in FANS),
+    *(f"drive_delay_{fan}_N" for fan in FANS),
+)
+FAN = np.arange(len(FANS)) == 2  # the third one, b1
+
+
+@pytest.mark.parametrize(
+    ("changed", "name", "parameter", "true"),
+    [
+        ({"lags": 0.12 * FAN}, "drive_lag_b1_N", "time_constant", 0.12),
+        ({"delays": 5 * FAN}, "drive_delay_b1_N", "delay", 5 / RATE),
+    ],
+)
+@pytest.mark.slow
+def test_a_lag_and_a_dead_time_of_one_fan_are_found_with_the_fan(changed, name, parameter, true):
+    ranking = ranked(floated(1, **changed), floated(2, **changed), tested=DYNAMICS)
+    assert [one.name for one in ranking.named] == [name]
+    value, sd = ranking.best.value(name, parameter)
+    assert abs(value - true) < max(4.0 * sd, 0.1 * true)

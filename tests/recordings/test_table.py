@@ -232,6 +232,57 @@ def test_a_roll_angle_that_was_never_recorded_decides_nothing_about_units():
     assert units.find_columns_in_degrees(columns) == {}
 
 
+def spinning(rate: float, seed: int = 4) -> dict[str, np.ndarray]:
+    """A craft that spins up and drifts east; its heading is counted on."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 40.0, 0.1)
+    r = rate * np.interp(t, [0.0, 10.0, 40.0], [0.1, 1.0, 0.8])
+    psi = np.cumsum(r) * 0.1
+    return {
+        "t_s": t,
+        "x_m": 0.01 * rng.normal(size=len(t)),
+        "y_m": 0.5 * t + 0.01 * rng.normal(size=len(t)),
+        "psi_rad": psi + 0.01 * rng.normal(size=len(t)),
+        "r_radps": r + 0.01 * rng.normal(size=len(t)),
+    }
+
+
+@pytest.mark.parametrize("rate", [6.0, 14.0, 31.0])
+@pytest.mark.parametrize("columns", [("psi_rad",), ("x_m", "y_m", "psi_rad"), ("r_radps",)])
+def test_a_craft_that_spins_several_turns_a_second_is_in_radians(rate, columns):
+    run = spinning(rate)
+    assert units.find_columns_in_degrees({name: run[name] for name in ("t_s", *columns)}) == {}
+
+
+def test_a_gap_in_a_heading_that_is_counted_on_is_no_sign_of_degrees():
+    run = spinning(14.0)
+    rows = np.abs(run["t_s"] - 20.0) > 1.5
+    kept = {name: values[rows] for name, values in run.items() if name != "r_radps"}
+    assert np.abs(np.diff(kept["psi_rad"])).max() > 3.0 * math.pi
+    assert units.find_columns_in_degrees(kept) == {}
+
+
+def test_a_sparse_heading_shows_the_unit_of_a_rate_of_turn():
+    run = spinning(14.0)
+    sparse = run | {"psi_rad": np.where(np.arange(400) % 2 == 0, run["psi_rad"], np.nan)}
+    assert units.find_columns_in_degrees(sparse) == {}
+    gentle = spinning(0.3)
+    gentle["r_radps"] = np.degrees(gentle["r_radps"])
+    gentle["psi_rad"][1::2] = np.nan
+    assert list(units.find_columns_in_degrees(gentle)) == ["r_radps"]
+
+
+def test_a_rate_of_turn_alone_is_in_degrees_by_its_size_and_its_scatter_or_resolution():
+    gentle = spinning(0.3)
+    degrees = np.degrees(gentle["r_radps"])
+    assert list(units.find_columns_in_degrees({"t_s": gentle["t_s"], "r_radps": degrees})) == [
+        "r_radps"
+    ]
+    smooth = np.degrees(0.2 + 0.1 * np.sin(gentle["t_s"]))
+    rounded = {"t_s": gentle["t_s"], "r_radps": np.round(smooth, 1)}
+    assert list(units.find_columns_in_degrees(rounded)) == ["r_radps"]
+
+
 def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():
     run = circle().between(2.0, 4.0)
     assert (run.t[0], run.t[-1], len(run)) == (pytest.approx(2.0), pytest.approx(4.0), 41)

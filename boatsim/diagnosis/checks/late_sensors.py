@@ -115,6 +115,8 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
     config = recorded.config.checks
     stride = max(step, config.late_min_delay * froude_time_scale(recorded.program.vessel))
     base = recorded.log_likelihood(nominal.free, nominal.theta, on, levels)
+    if not np.isfinite(base):  # the vessel does not follow the log, late or not
+        return None
     best = _Delay("", 0.0, base)
     for name in COLUMNS:
         for seconds in np.arange(stride, compared.lost + 1e-9, stride).tolist():
@@ -124,7 +126,7 @@ def _likeliest_delay(compared: FaultComparison, step: float) -> _Delay | None:
             if np.isfinite(value) and value > best.value:
                 best = _Delay(name, one.seconds, value)
     at_the_end = best.seconds > compared.lost - 2.0 * step
-    if at_the_end or best.value - base < config.compare_min_lead:
+    if not best.name or at_the_end or not best.value - base >= config.compare_min_lead:
         return None
     return best
 

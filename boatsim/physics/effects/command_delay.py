@@ -6,7 +6,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, segment_mean
+from boatsim.physics.base import (
+    Array,
+    ChannelEffect,
+    SignalSegment,
+    param,
+    preset_effect,
+    segment_mean,
+)
 from boatsim.physics.kinds.channel import DELAYS
 
 SAME = 1e-9  # [s] times closer than this are the same instant
@@ -167,3 +174,19 @@ class CommandDelay(ChannelEffect):
         spread=0.5,
         within=(0.0, 1.6),
     )
+
+
+DriveDelay = preset_effect(
+    CommandDelay,
+    "DriveDelay",
+    words="the commands of one drive take effect after a dead time of its own",
+    shown_by="fast steps of this drive alone",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    frees={
+        "delay": {
+            "words": "dead time of this drive, beyond that of the vessel's file",
+            "spread": 0.5,
+        },
+    },
+)

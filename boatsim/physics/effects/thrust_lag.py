@@ -13,6 +13,7 @@ from boatsim.physics.base import (
     first_order_lag,
     longest_lag_step,
     param,
+    preset_effect,
 )
 
 NONE = 1e-4  # [s] a shorter lag counts as none
@@ -91,3 +92,19 @@ class ThrustLag(ChannelEffect):
         fit=True,
         spread=0.6,
     )
+
+
+DriveLag = preset_effect(
+    ThrustLag,
+    "DriveLag",
+    words="the thrust of one drive follows its command with a lag of its own",
+    shown_by="fast steps of this drive alone",
+    once_per="actuator",
+    frees={
+        "time_constant": {
+            "words": "time constant of this drive, beyond that of the vessel's file: time to 63 % "
+            "of a step",
+            "spread": 0.6,
+        },
+    },
+)

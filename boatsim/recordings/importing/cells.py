@@ -17,6 +17,9 @@ DECIMALS = re.compile(r"[+-]?\d+[.,](\d+)")
 TRUTH = {"true": 1.0, "false": 0.0}
 MIN_NUMBERS = 0.5  # share of the filled cells that are numbers, in a column of numbers
 MAX_SHOWN = 20  # characters of a cell in a remark
+NUMBER_AND_UNIT = re.compile(
+    r"([+-]?\d[\d.,]*(?:e[+-]?\d+)?)\s*([^\W\d_][^\d]{0,7}|[°%])", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
@@ -26,11 +29,15 @@ class Cells:
     Attributes:
         values: Values (N,); nan where a cell is empty or a word.
         are_dates: Whether the cells are dates; the values are then s since 1970 or midnight.
+        unit: Unit that stands behind every number, such as deg in `12.3 deg`; "" without one.
+        word: The word of a column in which every filled cell is the same word; "" otherwise.
         remarks: Pairs of a message and the index of the first row that it concerns.
     """
 
     values: Array
     are_dates: bool = False
+    unit: str = ""
+    word: str = ""
     remarks: tuple[tuple[str, int], ...] = ()
 
 
@@ -63,9 +70,35 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         times = seconds_from_dates(cells)
         if times is not None:
             return Cells(times, are_dates=True)
+        with_unit = _numbers_with_unit(texts, words, separator)
+        if with_unit is not None:
+            return with_unit
     if not numbers:
-        return Cells(found)
+        different = {cells[i].strip() for i in words}
+        word = different.pop() if len(different) == 1 else ""
+        return Cells(found, word=word)
     return _restored(cells, found, words)
+
+
+def _numbers_with_unit(texts: Sequence[str], words: Sequence[int], separator: str) -> Cells | None:
+    """Numbers of cells that have the same unit behind them; None for other cells.
+
+    Args:
+        texts: Texts of the column (N,).
+        words: Rows whose cell is neither a number nor empty.
+        separator: Separator of the table.
+    """
+    values = np.full(len(texts), np.nan)
+    unit = ""
+    for i in words:
+        parts = NUMBER_AND_UNIT.fullmatch(texts[i].strip())
+        if parts is None or (unit and parts[2] != unit):
+            return None
+        value = number_of_cell(parts[1], separator)
+        if value is None:
+            return None
+        values[i], unit = value, parts[2]
+    return Cells(values, unit=unit.strip())
 
 
 def number_of_cell(cell: str, separator: str) -> float | None:

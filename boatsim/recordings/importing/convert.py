@@ -16,6 +16,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.conversion import Allocation, Curve, Range
 from boatsim.recordings.expression import Expression, parse
+from boatsim.recordings.importing.clock_steps import continue_clock
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import HUGE, Log, Signal, median_sampling_rate
@@ -55,6 +56,8 @@ HELD = (
 FASTER = 1.5  # commands set the clock if their rate is this many times that of the poses
 ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
 MAX_ROUNDS = 4
+# A track begins with positions that were not measured if it leaps from 0 by this many usual steps
+MIN_LEAP, USUAL_STEP_PERCENTILE = 10.0, 99.0
 UNEQUAL = 0.1  # share of a step by which the steps of wave probes may differ
 MAX_ROWS = 5_000_000
 MAX_FILES = 20  # of which the remarks list the spans
@@ -100,7 +103,8 @@ def convert_log(
         BadInput: One line with the key of the map for a signal that does not exist or can not be
             converted.
     """
-    log = align_clocks(_with_time_of_map(log, map, file), map.begins, file)
+    log = _with_continued_clocks(_with_time_of_map(log, map, file))
+    log = align_clocks(log, map.begins, file)
     spans = file_spans(log)
     begin = min((span.begin for span in spans.values()), default=0.0)
     remarks = list(log.remarks)
@@ -116,6 +120,7 @@ def convert_log(
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
     _check_heading(work)
+    _drop_unfixed(work)
     _drop_repeats(work)
     _regularize_positions(work)
     rows, near = _row_times(work)
@@ -205,6 +210,34 @@ def _with_time_of_map(log: Log, map: Map, file: str) -> Log:
             if signal.source == source and len(signal.values) == len(t):
                 signals[name] = replace(signal, t=t)
     return replace(log, signals=signals)
+
+
+def _with_continued_clocks(log: Log) -> Log:
+    """The log with times that go on where a clock was set back, and remarks on these steps."""
+    streams: dict[int, dict[str, Array]] = {}
+    for name, signal in log.signals.items():
+        streams.setdefault(id(signal.t), {})[name] = signal.values
+    times: dict[int, Array] = {}
+    remarks = dict[str, None]()
+    for name, signal in log.signals.items():
+        key = id(signal.t)
+        if key in times:
+            continue
+        times[key], steps = continue_clock(signal.t, streams[key])
+        for step in steps:
+            stream = signal.source or name.rpartition(".")[0] or log.path.name
+            text = (
+                f"{log.path}: {stream}: the clock goes back by {step.seconds:.3g} s after sample "
+                f"{step.row}, but the samples go on; the later ones are moved so that they follow. "
+                "If the log was begun again there, cut it"
+            )
+            remarks[text] = None
+    if not remarks:
+        return log
+    signals: dict[str, Signal] = {}
+    for name, signal in log.signals.items():
+        signals[name] = replace(signal, t=times[id(signal.t)])
+    return replace(log, signals=signals, remarks=(*log.remarks, *remarks))
 
 
 def _column(work: _Work, name: str, what: str | Range | Curve | Allocation) -> tuple[Array, Array]:
@@ -347,6 +380,28 @@ def _check_values(work: _Work, name: str, given: Samples) -> Samples:
             f"{work.file}: columns.{name} = {largest:.3g}; no measurement is as large as {HUGE:g}"
         )
     return given
+
+
+def _drop_unfixed(work: _Work) -> None:
+    """Remove positions of exactly 0 and 0 before the first fix, from which the track leaps away."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return
+    track = x.given.values + 1j * y.given.values
+    moved = track != 0.0
+    first = int(np.argmax(moved))
+    if first == 0 or len(track) - first < FEWEST_ROWS:
+        return
+    usual = float(np.percentile(np.abs(np.diff(track[first:])), USUAL_STEP_PERCENTILE))
+    if abs(track[first]) < MIN_LEAP * usual:
+        return
+    work.remark(
+        f"x_m, y_m: omitted {first} positions of 0, 0 before the first fix, which is "
+        f"{abs(track[first]):.3g} m away"
+    )
+    for name, column in (("x_m", x), ("y_m", y)):
+        kept = Samples(column.given.t[first:], column.given.values[first:])
+        work.columns[name] = replace(column, given=kept)
 
 
 def _drop_repeats(work: _Work) -> None:

@@ -1,4 +1,7 @@
-"""Lines of a map that distribute a force and a moment to the drives of a vessel."""
+"""Lines of a map that distribute orders of another form to the drives of a vessel.
+
+These are a force and a moment, or the throttle and the steering of a stick.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,10 +10,18 @@ import numpy as np
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import median_sampling_rate
-from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.signal_classification import (
+    Classification,
+    side_from_tokens,
+)
+from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 
 EFFORTS = ("effort_x", "effort_n")  # force ahead and moment to starboard
 MIN_SHARE = 1e-6  # smaller shares of a force are rounding
+THROTTLE = {"throttle", "thrust", "gas", "surge", "forward", "speed"}
+STEERING = {"steer", "steering", "turn", "yaw", "helm", "rudder"}
+FULL_SHARES = (1.0, 100.0)  # numbers of a full order: a share, or per cent
+EXCESS = 1.01  # by which a full order may exceed its number, by rounding
 
 
 def allocation_lines(
@@ -42,6 +53,77 @@ def allocation_lines(
     for drive, row in zip(drives, shares, strict=True):
         lines[drive.name] = _line(drive, found, row.tolist())
     return lines
+
+
+def mixing_lines(
+    drives: Sequence[VesselChannel], orders: Sequence[Classification], turning: Turning
+) -> tuple[dict[str, str], list[Classification]]:
+    """Return the lines of fixed drives on both sides that a throttle and a steering order mix.
+
+    Each drive gets the throttle, plus the steering on one side and minus it on the other, as the
+    usual mixers do. The turning of the vessel shows the sign.
+
+    Args:
+        drives: Channels of the vessel.
+        orders: Commands of the log, or the sticks of the pilot.
+        turning: Turning of the vessel.
+
+    Returns:
+        Channel -> line, and the two orders; both empty if the drives are not all fixed, or there
+        are no two such orders.
+    """
+    throttle = [g for g in orders if g.tokens & THROTTLE and not g.tokens & STEERING]
+    steering = [g for g in orders if g.tokens & STEERING and not g.tokens & THROTTLE]
+    levers = [drive.lever for drive in drives if drive.lever is not None]
+    if len(throttle) != 1 or len(steering) != 1 or len(levers) < len(drives):
+        return {}, []
+    if side_from_tokens(throttle[0].tokens) or side_from_tokens(steering[0].tokens):
+        return {}, []
+    if not levers or not min(levers) < 0.0 < max(levers):
+        return {}, []
+    full = [_full_order(g) for g in (throttle[0], steering[0])]
+    if 0.0 in full:
+        return {}, []
+    correlation = turning.correlation((steering[0], 1.0))
+    lines = {}
+    for drive in drives:
+        lines[drive.name] = _mixed_line(drive, throttle[0], steering[0], full, correlation)
+    return lines, [throttle[0], steering[0]]
+
+
+def _full_order(g: Classification) -> float:
+    """The number of a full order, 1 or 100; 0 for an order that is no share."""
+    largest = float(np.nanmax(np.abs(g.signal.values)))
+    for full in FULL_SHARES:
+        if largest <= EXCESS * full:
+            return full
+    return 0.0
+
+
+def _mixed_line(
+    drive: VesselChannel,
+    throttle: Classification,
+    steering: Classification,
+    full: Sequence[float],
+    correlation: float,
+) -> str:
+    span = max(abs(drive.low), abs(drive.high))
+    to_starboard = 1.0
+    if correlation < -MIN_CORRELATION:
+        to_starboard = -1.0
+    sign = ""
+    if to_starboard * (drive.lever or 0.0) < 0.0:
+        sign = "-"
+    terms = [
+        toml_value(f"{throttle.name} * {span / full[0]:.6g}"),
+        toml_value(f"{sign}{steering.name} * {span / full[1]:.6g}"),
+    ]
+    return (
+        f"{toml_key(drive.name)} = {{ sum = [{', '.join(terms)}], low = {drive.low:g}, high = "
+        f"{drive.high:g} }}  # {median_sampling_rate(throttle.signal.t):.3g} Hz; CHECK: "
+        f"{throttle.name} and {steering.name} are assumed to be mixed in equal shares of full "
+        f"command; sign by the turning of the boat (correlation {correlation:+.2f})"
+    )
 
 
 def _line(drive: VesselChannel, found: Sequence[Classification], row: Sequence[float]) -> str:

@@ -12,10 +12,19 @@ from boatsim.files import toml_key, toml_value
 from boatsim.physics.signals import RATES
 from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
-from boatsim.recordings.importing.effort_allocation import EFFORTS, allocation_lines
+from boatsim.recordings.importing.effort_allocation import (
+    EFFORTS,
+    allocation_lines,
+    mixing_lines,
+)
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
+from boatsim.recordings.importing.motion_begin import begins_by_motion
 from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
-from boatsim.recordings.importing.several_logs import file_spans, files_with_unrelated_clocks
+from boatsim.recordings.importing.several_logs import (
+    begins_by_shared_clock,
+    file_spans,
+    files_with_unrelated_clocks,
+)
 from boatsim.recordings.importing.signal_classification import (
     HELM,
     PULSE,
@@ -24,6 +33,7 @@ from boatsim.recordings.importing.signal_classification import (
     Classification,
     classify_signals,
     has_opposite_sense,
+    has_stated_unit,
     side_from_tokens,
     tokenize_name,
 )
@@ -33,6 +43,7 @@ from boatsim.recordings.importing.track import (
     rate_in_degrees,
     reason_not_measured,
     reason_poses_unusable,
+    speed_unit,
     track_of,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
@@ -164,7 +175,8 @@ def propose_map(
     if reason := reason_poses_unusable(log, best, "yaw" in dof):
         raise file_error(log.path, reason)
     track = track_of(best)
-    best, doubtful = _without_contradictions(_with_rate_unit(best), track)
+    best = _with_speed_units(_with_rate_unit(best), track)
+    best, doubtful = _without_contradictions(best, track)
     body, used = _motion_lines(log, best, dof, known)
     body += doubtful
     for column, expression in known.items():
@@ -183,7 +195,7 @@ def propose_map(
         f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"',
         *([] if measured else _rate_lines((*used, *driven))),
         "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
-        *_begin_lines(log),
+        *_begin_lines(log, best),
         "",
         *body,
         "",
@@ -248,6 +260,26 @@ def _with_rate_unit(
     return kept
 
 
+def _with_speed_units(
+    best: Mapping[str, list[Classification]], track: Track | None
+) -> dict[str, list[Classification]]:
+    """Classified signals, in which the track shows the unit of speeds without one."""
+    kept = dict(best)
+    heading = next(iter(best.get("psi_rad", [])), None)
+    for column in ("u_mps", "v_mps"):
+        speeds = []
+        for g in best.get(column, []):
+            unit = ""
+            if not has_stated_unit(g.name, g.signal):
+                unit = speed_unit(column, g, track, heading)
+            if unit:
+                g = replace(g, word=unit, why=f"CHECK: in {unit} by the speed of the track")
+            speeds.append(g)
+        if speeds:
+            kept[column] = speeds
+    return kept
+
+
 def _without_contradictions(
     best: Mapping[str, list[Classification]], track: Track | None
 ) -> tuple[dict[str, list[Classification]], list[str]]:
@@ -265,17 +297,32 @@ def _without_contradictions(
     return kept, lines
 
 
-def _begin_lines(log: Log) -> list[str]:
-    """Lines that state when the further files of a run begin, if their clocks do not show it."""
+def _begin_lines(log: Log, best: Mapping[str, Sequence[Classification]]) -> list[str]:
+    """Lines that state when the further files of a run begin, if their times are no UTC."""
     spans = file_spans(log)
     if len(spans) < 2:
         return []
     first = next(iter(spans))
-    lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
-    for name in files_with_unrelated_clocks(spans, {}):
-        lines.append(f"begins.{toml_key(name)} = 0.0  # CHECK: no common clock, 0 is a guess")
-    if len(lines) == 1:
+    unrelated = files_with_unrelated_clocks(spans, {})
+    if not unrelated:
         return []
+    shared = begins_by_shared_clock(spans)
+    by_motion = begins_by_motion(best, {name: span.begin for name, span in spans.items()})
+    lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
+    for name in unrelated:
+        seconds, why = 0.0, "CHECK: no common clock, 0 is a guess"
+        if name in shared:
+            seconds, why = (
+                shared[name],
+                f"by its times, which are of one clock with those of {first}",
+            )
+        elif name in by_motion:
+            seconds = by_motion[name].seconds
+            why = (
+                "CHECK: by the turning that both files show (correlation "
+                f"{by_motion[name].correlation:.2f})"
+            )
+        lines.append(f"begins.{toml_key(name)} = {seconds!r}  # {why}")
     return lines
 
 
@@ -386,9 +433,12 @@ def _command_lines(
             lines.append(_channel_line(name, g, None))
         return lines, moving
     taken: list[Classification] = []
-    chosen = _match_channels(best, drives, moving, turning)
-    allocated = {}
-    if not chosen:
+    allocated, mixed = mixing_lines(drives, moving or best.get("stick", []), turning)
+    taken += mixed
+    chosen = {}
+    if not allocated:
+        chosen = _match_channels(best, drives, moving, turning)
+    if not chosen and not allocated:
         allocated = allocation_lines(drives, best)
         taken += [best[kind][0] for kind in EFFORTS if allocated and kind in best]
     for drive in drives:
@@ -408,10 +458,32 @@ def _command_lines(
         taken.append(g)
         g, unit_note = unit.with_unit(g, drive)
         lines.append(_channel_line(drive.name, g, drive, sense) + unit_note + why)
+    lines += _side_lines(drives, chosen, turning)
     for g in moving:
         if g not in taken:
             lines.append(_unused_line(g, drives))
     return lines, taken
+
+
+def _side_lines(
+    drives: Sequence[VesselChannel],
+    chosen: Mapping[str, tuple[Classification, str]],
+    turning: Turning,
+) -> list[str]:
+    """A comment if the boat turns to the other side than the commands of fixed drives ask for."""
+    terms = []
+    for drive in drives:
+        if drive.lever and drive.name in chosen:
+            terms.append((chosen[drive.name][0], float(np.sign(drive.lever))))
+    if len({sign for _, sign in terms}) < len(SIDED):
+        return []
+    sense = turning.correlation(*terms)
+    if sense > -MIN_CORRELATION:
+        return []
+    return [
+        "# CHECK: the boat turns to the other side than these commands ask for (correlation "
+        f"{sense:+.2f}): are two drives exchanged, or is the heading counted counterclockwise?"
+    ]
 
 
 class _RevolutionUnit:

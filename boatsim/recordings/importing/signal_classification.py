@@ -97,6 +97,7 @@ NUMBERED = {
 }  # other words in the name of a shaft speed
 ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".split())
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
+LEAST_SCALED = 1e5  # [1e-7 deg] 0.01 degrees; smaller numbers are of no place in this unit
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -227,8 +228,8 @@ def classify_signal(
         body: The vessel.
     """
     values = signal.values[np.isfinite(signal.values)]
-    if len(values) < MIN_SAMPLES:
-        return None
+    if len(values) < MIN_SAMPLES or np.array_equal(signal.values, signal.t):
+        return None  # the clock of a table is no signal
     words = tokenize_name(name) or [""]  # a name may have no word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
@@ -337,7 +338,7 @@ def _degrees(
         limit = 90.0
     if largest <= limit:
         return Classification(name, signal, column, "deg", score, "", tokens)
-    if largest <= limit * 1e7:
+    if LEAST_SCALED < largest <= limit * 1e7:
         return Classification(
             name, signal, column, "deg * 1e-7", score, "in 1e-7 degrees by its range", tokens
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.expression import parse
+from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import (
     NOT_MEASURED,
@@ -25,6 +25,9 @@ MIN_EXTENT = 20.0
 MAX_CORRELATION = 0.5
 MIN_DIFFERENCE = 0.7
 MIN_RATE_CORRELATION = 0.7  # of a rate with the changes of the heading that show its unit
+SPEED_UNITS = ("kn", "kmh")
+MIN_UNIT_CORRELATION = 0.9  # of a speed with that of the track that shows its unit
+UNIT_TOLERANCE = 1.15  # factor by which a log of speed may be wrong; the units differ by 1.85
 STRAIGHT = 0.2  # [rad] a constant heading is true on a course that differs by no more than this
 LATITUDES, LONGITUDES = ("lat", "latitude"), ("lon", "lng", "long", "longitude")
 
@@ -171,13 +174,43 @@ def _is_course(psi: float, track: Track) -> bool:
     return bool(len(off)) and float(np.percentile(np.abs(off), 90)) < STRAIGHT
 
 
-def _speed_contradiction(
-    column: str, t: Array, values: Array, track: Track, heading: Classification
+def speed_unit(
+    column: str, g: Classification, track: Track | None, heading: Classification | None
 ) -> str:
+    """Return the unit of a speed that states none, by the speed of the track; "" for m/s.
+
+    Two signs are needed: the speed follows that of the track, and their ratio is that of a unit.
+
+    Args:
+        column: u_mps or v_mps.
+        g: The speed, taken as m/s.
+        track: Motion by the positions; None if unknown.
+        heading: The heading; None if unknown.
+    """
+    if track is None or not track.moves or heading is None:
+        return ""
+    t, values = values_in_si(g)
+    expected, recorded = _speeds(column, t, values, track, heading)
+    if not len(expected) or _correlation(recorded, expected) < MIN_UNIT_CORRELATION:
+        return ""
+    ratio = float(np.linalg.norm(recorded) / np.linalg.norm(expected))
+    for unit in SPEED_UNITS:
+        factor = ratio * UNITS[unit]
+        if 1.0 / UNIT_TOLERANCE < factor < UNIT_TOLERANCE:
+            return unit
+    return ""
+
+
+def _speeds(
+    column: str, t: Array, values: Array, track: Track, heading: Classification
+) -> tuple[Array, Array]:
+    """Speeds (K,) of the hull by its track, and recorded ones; empty for too few windows."""
     at, psi = values_in_si(heading)
+    if not len(t) or not len(at):
+        return np.empty(0), np.empty(0)
     inside = (track.t > max(t[0], at[0])) & (track.t < min(t[-1], at[-1]))
     if inside.sum() < MIN_WINDOWS:
-        return ""
+        return np.empty(0), np.empty(0)
     rows = track.t[inside]
     bow = np.exp(1j * np.interp(rows, at, np.unwrap(psi)))
     along = (track.north + 1j * track.east)[inside] * bow.conj()
@@ -187,13 +220,27 @@ def _speed_contradiction(
     integral = np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(t)))
     half = 0.5 * WINDOW
     recorded = (np.interp(rows + half, t, integral) - np.interp(rows - half, t, integral)) / WINDOW
+    return expected, recorded
+
+
+def _correlation(a: Array, b: Array) -> float:
+    """Correlation; 0 for a constant signal."""
+    if a.std() > 0.0 and b.std() > 0.0:
+        return float(np.corrcoef(a, b)[0, 1])
+    return 0.0
+
+
+def _speed_contradiction(
+    column: str, t: Array, values: Array, track: Track, heading: Classification
+) -> str:
+    expected, recorded = _speeds(column, t, values, track, heading)
+    if not len(expected):
+        return ""
     size = float(np.sqrt(np.mean(expected**2)))
     difference = float(np.sqrt(np.mean((recorded - expected) ** 2)))
     if size == 0.0 or difference < MIN_DIFFERENCE * size:
         return ""
-    correlation = 0.0
-    if recorded.std() > 0.0 and expected.std() > 0.0:
-        correlation = float(np.corrcoef(recorded, expected)[0, 1])
+    correlation = _correlation(recorded, expected)
     if abs(correlation) >= MAX_CORRELATION:
         return ""
     return (

@@ -3,7 +3,7 @@
 import csv
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,18 @@ from boatsim.recordings.importing.cells import (
     column_of_cells,
     number_of_cell,
 )
-from boatsim.recordings.importing.clocks import time_column, times_in_seconds
+from boatsim.recordings.importing.clocks import (
+    seconds_and_fraction,
+    time_column,
+    times_in_seconds,
+    unit_of_counted_times,
+)
+from boatsim.recordings.importing.coarse_times import spread_coarse_times
+from boatsim.recordings.importing.coordinates import (
+    degrees_of_degrees_and_minutes,
+    degrees_of_texts,
+    kind_of_place,
+)
 from boatsim.recordings.importing.dates import seconds_from_dates
 from boatsim.recordings.importing.log import (
     MAX_SIGNALS,
@@ -27,26 +38,41 @@ from boatsim.recordings.importing.log import (
     Signal,
     damaged_log_error,
 )
+from boatsim.recordings.importing.missing_values import placeholder_rows
+from boatsim.recordings.importing.table_layout import (
+    BLANK,
+    cells_of_line,
+    header_line,
+    is_row_of_numbers,
+    separator_of,
+)
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw_table import check_unique_names, file_error
 
 if TYPE_CHECKING:
-    from pyarrow import ChunkedArray
+    from pyarrow import ChunkedArray, Table
 
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
-SEPARATORS = ",;\t|"
-BLANK = " "  # any number of blanks between the cells
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
 PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
 MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
+# Share of the rows that may have another number of cells than the header, because a write was cut
+MAX_CUT_ROWS = 0.05
+MAX_SHOWN = 40  # characters of a line in a remark
 csv.field_size_limit(1_000_000)
 
 
 def read(path: Path) -> Log:
     """Return all columns with numbers, at the times of the time column. Raises BadInput."""
     if path.suffix.lower() in (".parquet", ".pq"):
-        return _log(path, _parquet(path), {})
+        columns, remarks = dict[str, Array](), list[str]()
+        for name, values in _parquet(path).items():
+            cells = _without_placeholders(Cells(values))
+            columns[name] = cells.values
+            for message, row in cells.remarks:
+                remarks.append(f"{path}: row {row + 1}, column {name}: {message}")
+        return _log(path, columns, {}, tuple(remarks))
     return _csv(path)
 
 
@@ -58,11 +84,21 @@ def _log(
     dates: Collection[str] = (),
 ) -> Log:
     clock = time_column(columns, dates)
-    count = len(next(iter(columns.values()), ()))
-    if clock is None:
-        t = np.arange(count, dtype=float)
-    else:
-        t = times_in_seconds(clock, columns[clock])
+    t, how = _times(columns, clock)
+    if clock is None and not how:
+        how += ("no column holds times: rows are counted; the map can name it with `time`",)
+    elif clock in dates or (clock and clock.startswith("column_")):
+        how = (f"the times are those of column {clock}", *how)
+    spread = None
+    if clock is not None:
+        others = [values for name, values in columns.items() if name != clock]
+        spread = spread_coarse_times(t, others)
+    if spread is not None:
+        t = spread.t
+        how += (
+            f"{spread.rows:g} rows share each time of column {clock}, every {spread.step:g} s; "
+            "they are spread evenly until the next time",
+        )
     signals: dict[str, Signal] = {}
     for name, values in columns.items():
         if np.isfinite(values).any():
@@ -70,14 +106,40 @@ def _log(
             if name == clock:
                 unit = "s"
             signals[name] = Signal(t, values, unit)
-    if clock in dates or (clock and clock.startswith("column_")):
-        remarks = (*remarks, f"{path}: the times are those of column {clock}")
-    if not clock:
-        no_time = (
-            f"{path}: no column holds times: rows are counted; the map can name it with `time`"
+    return Log(path, signals, remarks=(*remarks, *(f"{path}: {text}" for text in how)))
+
+
+def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tuple[str, ...]]:
+    """Times (N,) [s] of the rows, and remarks on the columns from which they follow."""
+    parts = seconds_and_fraction(columns, clock)
+    if parts is not None:
+        return parts.t, (f"the times are those of columns {parts.seconds} and {parts.fraction}",)
+    if clock is None:
+        return np.arange(len(next(iter(columns.values()), ())), dtype=float), ()
+    counted = unit_of_counted_times(clock, columns[clock])
+    if counted:
+        step = float(np.nanmedian(np.diff(columns[clock])))
+        return times_in_seconds(clock, columns[clock], counted), (
+            f"the times of column {clock} are taken as {counted}: they are whole numbers, "
+            f"{step:g} from row to row",
         )
-        remarks = (*remarks, no_time)
-    return Log(path, signals, remarks=remarks)
+    return times_in_seconds(clock, columns[clock]), ()
+
+
+def _without_placeholders(cells: Cells) -> Cells:
+    """A column in which numbers that stand for missing values are empty, with a remark on each."""
+    values, remarks = cells.values, list(cells.remarks)
+    for number, rows in placeholder_rows(cells.values).items():
+        values = np.where(rows, np.nan, values)
+        count = int(rows.sum())
+        what = "1 cell is" if count == 1 else f"{count} cells are"
+        remarks.append(
+            (
+                f"{what} {number:g}, which stands for a missing value, and left empty",
+                int(np.argmax(rows)),
+            )
+        )
+    return replace(cells, values=values, remarks=tuple(remarks))
 
 
 def _unit(name: str) -> str:
@@ -128,27 +190,42 @@ class _Header:
     separator: str
     units: dict[str, str]
     row: int  # line of the first row of numbers, counted from 0
+    remarks: tuple[str, ...] = ()
 
 
 def _csv(path: Path) -> Log:
     head = _read_header(path)
     remarks: tuple[str, ...] = ()
+    lines: list[int] = []
     columns = _read_fast(path, head)
     if columns is None:
-        columns, remarks = _read_line_by_line(path, head)
+        columns, lines, remarks = _read_line_by_line(path, head)
     values, dates = dict[str, Array](), list[str]()
+    words, units = dict[str, str](), dict(head.units)
+    columns = {name: _without_placeholders(cells) for name, cells in columns.items()}
     for name, cells in columns.items():
         values[name] = cells.values
+        words[name] = cells.word
+        units[name] = units.get(name, "") or cells.unit
         if cells.are_dates:
             dates.append(name)
-    remarks = (*remarks, *_cell_remarks(path, head, columns))
-    return _log(path, values, head.units, remarks, dates)
+    remarks = (*head.remarks, *remarks, *_cell_remarks(path, head, columns, lines))
+    places = degrees_of_degrees_and_minutes(values, words)
+    if places:
+        values |= places
+        named = " and ".join(places)
+        remarks = (*remarks, f"{path}: {named} are degrees and minutes (ddmm.mmm): read as degrees")
+    return _log(path, values, units, remarks, dates)
 
 
-def _cell_remarks(path: Path, head: "_Header", columns: Mapping[str, Cells]) -> list[str]:
-    """Remarks on cells that were changed or left empty, with column and line of the file."""
+def _cell_remarks(
+    path: Path, head: "_Header", columns: Mapping[str, Cells], lines: list[int]
+) -> list[str]:
+    """Remarks on cells that were changed or left empty, with column and line of the file.
+
+    `lines` are the lines of the rows of numbers, counted from 1; [] if all lines are rows.
+    """
     found = []
-    lines: list[int] = []
     for name, cells in columns.items():
         for message, row in cells.remarks:
             lines = lines or _lines_of_rows(path, head)
@@ -177,44 +254,45 @@ def _read_header(path: Path) -> _Header:
         raise file_error(path, "is empty")
     if len(lines) < 2:
         raise file_error(path, "has a header and no rows")
+    lines, remarks = _without_preamble(path, lines)
+    if len(lines) < 2:
+        raise file_error(path, "has a header and no rows")
     first = lines[0][1].lstrip("#%/ ")
-    separator = _separator(first, lines[1][1])
-    header = _names(_cells(first, separator))
+    separator = separator_of(first, lines[1][1])
+    header = _names(cells_of_line(first, separator))
     if len(header) > MAX_SIGNALS:
         raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
+    if is_row_of_numbers(header, separator):
+        names = [f"column_{i}" for i in range(1, len(header) + 1)]
+        remark = f"{path}: has no header; its columns are called {names[0]} to {names[-1]}"
+        return _Header(names, separator, {}, lines[0][0], (*remarks, remark))
     check_unique_names(path, header)
-    if None not in map(number_of_cell, header, repeat(separator)):
-        raise file_error(
-            path,
-            "has no header: its first row is numbers; names of columns are needed",
-            lines[0][0] + 1,
-        )
     units: dict[str, str] = {}
     for name in header:
         if found := BRACKETS.search(name):
             units[name] = found[1].strip()
-    below = _cells(lines[1][1], separator)
+    below = cells_of_line(lines[1][1], separator)
     if len(below) == len(header) and _is_units(below, header, separator):
         if len(lines) < 3:
             raise file_error(path, "has a header and no rows")
         units = dict(zip(header, map(str.strip, below, repeat("[]() ")), strict=True))
         lines.pop(0)
-    return _Header(header, separator, units, lines[1][0])
+    return _Header(header, separator, units, lines[1][0], remarks)
 
 
-def _separator(header: str, row: str) -> str:
-    """Separator of the cells of a table; blanks if header and row have equally many words."""
-    best = max(SEPARATORS, key=header.count)
-    if best not in header and len(header.split()) == len(row.split()) > 1:
-        return BLANK
-    return best
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    """Cells of a line. Raises csv.Error."""
-    if separator == BLANK:
-        return line.split()
-    return next(csv.reader([line], delimiter=separator), [])
+def _without_preamble(
+    path: Path, lines: list[tuple[int, str]]
+) -> tuple[list[tuple[int, str]], tuple[str, ...]]:
+    """The lines from the header on, and a remark on those before it."""
+    begin = header_line([line for _, line in lines])
+    first = lines[begin][1].lstrip("#%/ ")
+    below = lines[min(begin + 1, len(lines) - 1)][1]
+    separator = separator_of(first, below)
+    if begin == 0 or is_row_of_numbers(cells_of_line(first, separator), separator):
+        return lines, ()
+    shown = lines[0][1].strip()[:MAX_SHOWN]
+    what = "1 line before the header is" if begin == 1 else f"{begin} lines before the header are"
+    return lines[begin:], (f"{path}: {what} left out, the first is {shown!r}",)
 
 
 def _names(header: Sequence[str]) -> list[str]:
@@ -252,10 +330,26 @@ def _read_fast(path: Path, head: _Header) -> dict[str, Cells] | None:
     except (pa.ArrowException, OSError, ValueError):
         return None
     found = pa.Table.from_batches(batches, pieces.schema)
-    return {name: _numbers_of_texts(found[name], head.separator) for name in head.columns}
+    if _repeats_header(found, head.columns):
+        return None
+    columns = {}
+    for name in head.columns:
+        columns[name] = _numbers_of_texts(found[name], name, head.separator)
+    return columns
 
 
-def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Cells:
+def _repeats_header(found: "Table", header: Sequence[str]) -> bool:
+    """Whether a row is the header again, as loggers write that are started again."""
+    from pyarrow import compute
+
+    rows = None
+    for name in header[:2]:  # two cells are enough
+        same = compute.equal(compute.utf8_trim_whitespace(found[name]), name)
+        rows = same if rows is None else compute.and_(rows, same)
+    return bool(compute.any(rows).as_py())
+
+
+def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cells:
     """Numbers of a column of texts, by native code if all cells are numbers or empty."""
     import pyarrow as pa
     from pyarrow import compute
@@ -268,11 +362,26 @@ def _numbers_of_texts(column: "ChunkedArray", separator: str) -> Cells:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
         return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
     except pa.ArrowException:
-        return column_of_cells(column.to_pylist(), separator)
+        return _column(name, column.to_pylist(), separator)
 
 
-def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Cells], tuple[str, ...]]:
-    """The columns of any other table, and remarks. Raises BadInput with the line of a mistake."""
+def _column(name: str, cells: Sequence[str], separator: str) -> Cells:
+    """Numbers of the text cells of a column; those of a place may have degrees and minutes."""
+    found = column_of_cells(cells, separator)
+    if kind_of_place(name) and not np.isfinite(found.values).any():
+        degrees = degrees_of_texts(cells)
+        if degrees is not None:
+            return Cells(degrees, unit="deg")
+    return found
+
+
+def _read_line_by_line(
+    path: Path, head: _Header
+) -> tuple[dict[str, Cells], list[int], tuple[str, ...]]:
+    """The columns of any other table, the lines of its rows, and remarks.
+
+    Raises BadInput with the line of a mistake.
+    """
     if path.stat().st_size > MAX_TEXT_BYTES:
         raise file_error(
             path,
@@ -283,14 +392,14 @@ def _read_line_by_line(path: Path, head: _Header) -> tuple[dict[str, Cells], tup
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
     kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]
     MemoryBudget(path).count_values(len(head.columns) * len(kept), len(head.columns))
-    rows, remarks = _rows(path, kept, head.separator, len(head.columns))
+    rows, numbers, remarks = _rows(path, kept, head)
     if not rows:
         raise file_error(path, "has a header and no rows")
     cells_of = zip(*rows, strict=True)
     columns: dict[str, Cells] = {}
     for name, cells in zip(head.columns, cells_of, strict=True):
-        columns[name] = column_of_cells(cells, head.separator)
-    return columns, remarks
+        columns[name] = _column(name, cells, head.separator)
+    return columns, numbers, remarks
 
 
 def _text(path: Path, found: bytes) -> str:
@@ -306,32 +415,73 @@ def _may_be_header(lines: Sequence[tuple[int, str]]) -> bool:
     """Whether a commented line is the header: the next line is no comment and has as many cells."""
     if len(lines) < 2 or lines[1][1].lstrip().startswith(COMMENT):
         return False
-    separator = max(SEPARATORS, key=lines[1][1].count)
+    separator = separator_of(lines[1][1], "")
     return lines[0][1].count(separator) == lines[1][1].count(separator) > 0
 
 
 def _rows(
-    path: Path, lines: Sequence[tuple[int, str]], separator: str, width: int
-) -> tuple[list[list[str]], tuple[str, ...]]:
-    """Rows with as many cells as the header, without a last one that is cut. Raises BadInput."""
-    rows: list[list[str]] = []
-    for k, (number, line) in enumerate(lines):
+    path: Path, lines: Sequence[tuple[int, str]], head: _Header
+) -> tuple[list[list[str]], list[int], tuple[str, ...]]:
+    """Rows with as many cells as the header, their lines, and remarks on the others.
+
+    Raises BadInput if many rows have another number of cells.
+    """
+    width = len(head.columns)
+    rows, numbers = list[list[str]](), list[int]()
+    again, cut = list[int](), list[tuple[int, int]]()
+    for number, line in lines:
         if line.lstrip().startswith(COMMENT):
             continue
         try:
-            cells = _cells(line, separator)
+            cells = cells_of_line(line, head.separator)
         except csv.Error as error:
             raise file_error(path, f"is not CSV ({error})", number) from error
         if len(cells) == width + 1 and not cells[-1].strip():
             cells.pop()  # a separator at the end
         if len(cells) != width:
-            if k == len(lines) - 1:
-                return rows, (f"{path}: its last row is cut and left out",)
-            raise file_error(
-                path, f"has {len(cells)} cells; the header has {width} columns", number
-            )
-        rows.append(cells)
-    return rows, ()
+            cut.append((number, len(cells)))
+        elif list(map(str.strip, cells)) == head.columns:
+            again.append(number)
+        else:
+            rows.append(cells)
+            numbers.append(number)
+    remarks = []
+    if again:
+        repeats = _rows_are(len(again), "the header again")
+        remarks.append(f"{path}: row {again[0]}: {repeats} and left out")
+    if cut:
+        remarks.append(_cut_remark(path, cut, lines[-1][0], len(rows), width))
+    return rows, numbers, tuple(remarks)
+
+
+def _cut_remark(
+    path: Path, cut: Sequence[tuple[int, int]], last: int, complete: int, width: int
+) -> str:
+    """Remark on rows with another number of cells. Raises BadInput if these are many.
+
+    Args:
+        path: The table.
+        cut: Line and number of cells of each such row.
+        last: Last line of the table.
+        complete: Number of the other rows.
+        width: Number of columns.
+    """
+    number, cells = cut[0]
+    if len(cut) == 1 and number == last:
+        return f"{path}: its last row is cut and left out"
+    if len(cut) > MAX_CUT_ROWS * (complete + len(cut)):
+        raise file_error(path, f"has {cells} cells; the header has {width} columns", number)
+    return (
+        f"{path}: row {number}: {_rows_are(len(cut), 'cut or joined')} and left out, the first "
+        f"has {cells} cells, the header {width} columns"
+    )
+
+
+def _rows_are(count: int, what: str) -> str:
+    """Number of rows with the verb of a sentence."""
+    if count == 1:
+        return f"1 row is {what}"
+    return f"{count} rows are {what}"
 
 
 def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:

@@ -183,3 +183,41 @@ def test_a_constant_heading_is_refused_unless_the_boat_keeps_that_course():
     straight = run | {"north": np.cumsum(run["u"]) * 0.1, "east": 1e-4 * np.sin(run["t"])}
     table, _ = proposed(log_of(straight, current_orientation_3=zero))
     assert table["columns"]["psi_rad"].startswith("current_orientation_3")
+
+
+@pytest.mark.parametrize(("full", "sign"), [(1.0, 1.0), (100.0, -1.0)])
+def test_a_throttle_and_a_steering_order_are_mixed_to_the_propellers(full, sign):
+    run = simulated()
+    orders = {
+        "throttle": full * (run["port"] + run["starboard"]) / 208.0,
+        "steering": sign * full * (run["port"] - run["starboard"]) / 208.0,
+    }
+    log = log_of(run, **orders)
+    table, text = proposed(log)
+    assert "CHECK: throttle and steering are assumed to be mixed in equal shares" in text
+    recording = convert_log(log, parse_map(table, "map.toml"), "map.toml")
+    begin = len(run["t"]) - len(recording)
+    for side in ("port", "starboard"):
+        there = recording[f"n_{side}_radps"]
+        assert there == pytest.approx(np.minimum(run[side][begin:], 104.0), rel=1e-4)
+
+
+def test_drives_that_turn_the_boat_to_the_other_side_are_pointed_out():
+    run = simulated()
+    right = {"rpm_port": run["port"] / RPM, "rpm_starboard": run["starboard"] / RPM}
+    assert "turns to the other side" not in proposed(log_of(run, **right))[1]
+    wrong = {"rpm_port": run["starboard"] / RPM, "rpm_starboard": run["port"] / RPM}
+    text = proposed(log_of(run, **wrong))[1]
+    assert "CHECK: the boat turns to the other side than these commands ask for" in text
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("kn", 3600 / 1852), ("kmh", 3.6)])
+def test_the_track_shows_the_unit_of_a_speed_without_one(unit, factor):
+    run = simulated()
+    noise = 0.02 * np.random.default_rng(3).normal(size=len(run["t"]))
+    table, text = proposed(log_of(run, surge_velocity=factor * (run["u"] + noise)))
+    assert table["columns"]["u_mps"] == f"surge_velocity * {unit}"
+    assert f"CHECK: in {unit} by the speed of the track" in text
+    half_wrong = 1.4 * (run["u"] + noise)  # neither m/s nor another unit
+    columns = proposed(log_of(run, surge_velocity=half_wrong))[0]["columns"]
+    assert columns["u_mps"] == "surge_velocity"

@@ -191,3 +191,85 @@ def test_the_command_joins_two_files_by_the_map_that_it_proposed(tmp_path, monke
     check_columns(read("run/run.csv"), 12.4)
     done = CliRunner().invoke(app, ["import", *files, "--map", "map.toml", "--out", "engine.csv"])
     assert done.exit_code == 2 and "would overwrite the input" in done.output
+
+
+def turning_boat() -> dict[str, np.ndarray]:
+    """A boat at 1 m/s whose turning has no period."""
+    t = np.arange(0.0, 120.0, 0.1)
+    turn = 0.3 * np.sin(0.004 * t**2) + 0.2 * np.sin(0.31 * t)
+    psi = np.cumsum(turn) * 0.1
+    north, east = np.cumsum(np.cos(psi)) * 0.1, np.cumsum(np.sin(psi)) * 0.1
+    return {"t": t, "psi": psi, "north": north, "east": east, "thrust": 50.0 + 10.0 * turn}
+
+
+def sensor_files(folder: Path, starts: tuple[float, float, float]) -> list[Path]:
+    """One file for each sensor; the heading begins 5 s and the engine 8 s after the track."""
+    run = turning_boat()
+    late, last = run["t"] >= 5.0, run["t"] >= 8.0
+    track = {"north": run["north"][::5], "east": run["east"][::5]}
+    degrees = np.degrees(run["psi"])
+    return [
+        write(folder / "track.csv", "time", run["t"][::5], starts[0], **track),
+        write(folder / "compass.csv", "time", run["t"][late], starts[1], heading=degrees[late]),
+        write(folder / "engine.csv", "time", run["t"][last], starts[2], thrust=run["thrust"][last]),
+    ]
+
+
+def test_files_of_one_clock_without_utc_begin_at_their_times(tmp_path):
+    log = open_logs(sensor_files(tmp_path, (51.2, 56.2, 59.2)))
+    table = tomllib.loads(propose_map(log))
+    assert table["begins"] == {"compass.csv": 5.0, "engine.csv": 8.0}
+    run = convert_log(log, parse_map(table, "map.toml"), "map.toml", CHANNELS)
+    told = turning_boat()
+    assert run["psi_rad"][0] == pytest.approx(np.interp(8.0, told["t"], told["psi"]), abs=1e-3)
+    with pytest.raises(BadInput, match=r'"compass.csv" = 5 \(if both have one clock\)'):
+        convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+
+
+def test_files_that_begin_at_zero_are_placed_by_the_turning_that_both_show(tmp_path):
+    log = open_logs(sensor_files(tmp_path, (0.0, 0.0, 0.0)))
+    text = propose_map(log)
+    begins = tomllib.loads(text)["begins"]
+    assert begins["compass.csv"] == pytest.approx(5.0, abs=0.3)
+    assert "CHECK: by the turning that both files show" in text
+    assert begins["engine.csv"] == 0.0 and "0 is a guess" in text
+
+
+def test_regular_zigzags_do_not_show_when_a_file_begins(tmp_path):
+    t = np.arange(0.0, 120.0, 0.1)
+    psi = 0.5 * np.sin(0.5 * t)
+    north, east = np.cumsum(np.cos(psi)) * 0.1, np.cumsum(np.sin(psi)) * 0.1
+    files = [
+        write(tmp_path / "track.csv", "time", t, 0.0, north=north, east=east),
+        write(tmp_path / "compass.csv", "time", t[50:], 0.0, heading=np.degrees(psi[50:])),
+    ]
+    assert 'begins."compass.csv" = 0.0  # CHECK' in propose_map(open_logs(files))
+
+
+def test_a_folder_is_one_run_and_what_is_no_log_is_named(tmp_path):
+    sensor_files(tmp_path, (51.2, 56.2, 59.2))
+    (tmp_path / "notes.txt").write_text("calm, no wind")
+    (tmp_path / "photo.jpg").write_bytes(b"x")
+    log = open_logs([tmp_path])
+    assert {"north", "heading", "thrust"} <= log.signals.keys()
+    assert any("notes.txt" in remark for remark in log.remarks)
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    with pytest.raises(BadInput, match="the folder has no log that can be read"):
+        open_logs([empty])
+
+
+@pytest.mark.parametrize("start", [0.0, EPOCH])
+def test_files_of_the_same_signals_that_follow_each_other_are_one_log(tmp_path, start):
+    t = np.arange(0.0, 60.0, 0.1)
+    parts = []
+    for i, rows in enumerate((slice(0, 200), slice(200, 450), slice(450, 600)), 1):
+        columns = {"heading": heading(t[rows]), "thrust": thrust(t[rows])}
+        parts.append(
+            write(tmp_path / f"log_{i}.csv", "time", t[rows], start + t[rows][0], **columns)
+        )
+    log = open_logs([parts[1], parts[0], parts[2]])
+    run = convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
+    assert run.t == pytest.approx(t, abs=1e-4)
+    assert run["psi_rad"] == pytest.approx(np.radians(heading(t)), abs=1e-5)
+    assert "log_1.csv, log_2.csv, log_3.csv have the same signals" in " ".join(run.remarks)

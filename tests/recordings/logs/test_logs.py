@@ -469,11 +469,11 @@ def test_names_from_a_log_reach_neither_terminal_nor_map_as_they_are(tmp_path):
     [
         ("", "is empty"),
         ("t_s,x_m\n", "has a header and no rows"),
-        ("1,2,3\n" * 9, "has no header"),
         ("a,a\n1,2\n", "two columns of this name"),
         ("a,b\n1,2\n1\n3,4\n", "row 3: has 1 cells; the header has 2 columns"),
         ("a\0b", "is not a text file"),
-        ("a,b\n" * 3, None),
+        ("a,b\n" * 3, "has a header and no rows"),
+        ("a,b\n" + "c,d\n" * 3, None),
     ],
 )
 def test_a_bad_table_gets_one_line(tmp_path, text, said):

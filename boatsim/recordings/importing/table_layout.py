@@ -1,0 +1,72 @@
+"""Where the table of a text begins: the lines of a logger before its header, and its separator."""
+
+import csv
+from collections import Counter
+from collections.abc import Sequence
+from itertools import repeat
+
+from boatsim.recordings.importing.cells import number_of_cell
+
+SEPARATORS = ",;\t|"
+BLANK = " "  # any number of blanks between the cells
+SAMPLE = 200  # lines that are compared to find the header
+MIN_TABLE_SHARE = 0.5  # of the sampled lines that have the number of cells of the table
+
+
+def cells_of_line(line: str, separator: str) -> list[str]:
+    """Return the cells of a line. Raises csv.Error."""
+    if separator == BLANK:
+        return line.split()
+    return next(csv.reader([line], delimiter=separator), [])
+
+
+def separator_of(header: str, row: str) -> str:
+    """Return the separator of a table; blanks if header and row have equally many words."""
+    best = max(SEPARATORS, key=header.count)
+    if best not in header and len(header.split()) == len(row.split()) > 1:
+        return BLANK
+    return best
+
+
+def header_line(lines: Sequence[str]) -> int:
+    """Return the index of the line of a text with which its table begins.
+
+    Loggers write their name, settings or the date of a trial before the table. These lines have
+    other numbers of cells than the rows.
+
+    Args:
+        lines: Lines that are not empty, at least two.
+    """
+    sample = lines[:SAMPLE]
+    first = separator_of(sample[0], sample[1])
+    if _share_of_width(sample[1:], first, _width(sample[0], first)) >= MIN_TABLE_SHARE:
+        return 0
+    best, most = 0, 0
+    for separator in SEPARATORS:
+        widths = [_width(line, separator) for line in sample]
+        width, count = Counter(widths[len(widths) // 2 :]).most_common(1)[0]
+        if width < 2 or count * width <= most:
+            continue
+        best, most = widths.index(width), count * width
+    return best
+
+
+def is_row_of_numbers(cells: Sequence[str], separator: str) -> bool:
+    """Whether all cells of a line are numbers or empty, so that it is no header."""
+    return None not in map(number_of_cell, cells, repeat(separator))
+
+
+def _width(line: str, separator: str) -> int:
+    """Number of cells of a line, without an empty one at its end."""
+    try:
+        cells = cells_of_line(line.strip("\r\n"), separator)
+    except csv.Error:
+        return 0
+    if len(cells) > 1 and not cells[-1].strip():
+        cells.pop()
+    return len(cells)
+
+
+def _share_of_width(lines: Sequence[str], separator: str, width: int) -> float:
+    same = sum(abs(_width(line, separator) - width) == 0 for line in lines)
+    return same / len(lines)
