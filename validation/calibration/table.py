@@ -78,11 +78,10 @@ def calibration_error(table: Sequence[Bin]) -> float:
 def figures(records: Sequence[Record]) -> dict[str, str]:
     """Return the counts that the goals of a campaign refer to, as text."""
     stated = statements(records)
-    sure = [one.right for one in stated if one.probability >= SURE]
     none = of_kind(records, "none")
     unknown = [r for r in of_kind(records, "unknown") if clearly_visible(r)]
     removed = of_kind(records, "removed")
-    others = [r for r in records if r["kind"] != "removed"]
+    kept = statements(r for r in records if r["kind"] != "removed")
     known = of_kind(records, "single", "pair", "several")
     single = [r for r in of_kind(records, "single") if clearly_visible(r)]
     pair = [r for r in of_kind(records, "pair") if clearly_visible(r)]
@@ -93,9 +92,10 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
     return {
         "expected calibration error": f"{calibration_error(reliability(stated)):.3f}",
         "the same where no true effect was removed": (
-            f"{calibration_error(reliability(statements(others))):.3f}"
+            f"{calibration_error(reliability(kept)):.3f}"
         ),
-        f"names stated at {SURE:g} or more, right": share(sure),
+        f"names stated at {SURE:g} or more, right": share(_sure(stated)),
+        "the same where no true effect was removed, right": share(_sure(kept)),
         "logs without a cause, with a name": count(none, named),
         "logs without a cause, called unknown": count(none, flagged),
         "visible unknown causes flagged, pilot": count(piloted, flagged),
@@ -113,6 +113,11 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
         "known cause beside an unknown one, a wrong name": count(mixed, wrong),
         "logs whose recalibrated model is worse than the file": count(records, harmed),
     }
+
+
+def _sure(stated: Sequence[Statement]) -> list[bool]:
+    """Whether each name that is stated as sure is right."""
+    return [one.right for one in stated if one.probability >= SURE]
 
 
 def of_kind(records: Iterable[Record], *kinds: str) -> list[Record]:
