@@ -7,6 +7,7 @@ held-out recordings, hardly any law of these inputs can.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +94,7 @@ class FlexibleModel:
             runs.append(np.array(states))
         return runs
 
-    def _force(self, module: object, y: Array, command: Array) -> list[float]:
+    def _force(self, module: Any, y: Array, command: Array) -> list[float]:
         x = np.append(_velocities(module, y), command)
         return [process.predict(x) for process in self.processes]
 
@@ -145,10 +146,12 @@ def tuned_flexible_model(problem: Problem, fit: Fit, horizon: float) -> Flexible
         horizon: Length of the free runs that are compared [s].
     """
     runs = problem.recordings
+    if len(runs) == 1:
+        return FlexibleModel(problem, fit, runs)
     errors = {}
-    for smoothing in SMOOTHINGS if len(runs) > 1 else SMOOTHINGS[:1]:
+    for smoothing in SMOOTHINGS:
         found = []
-        for out in runs if len(runs) > 1 else ():
+        for out in runs:
             rest = [run for run in runs if run is not out]
             model = FlexibleModel(problem, fit, rest, smoothing)
             found += compared_free_runs(problem, {"retuned": fit}, model, [out], horizon)
@@ -156,7 +159,7 @@ def tuned_flexible_model(problem: Problem, fit: Fit, horizon: float) -> Flexible
         for by_model in rms_errors(found).values():
             ratio *= by_model[FLEXIBLE] / by_model["retuned"]
         errors[smoothing] = ratio
-    best = min(errors, key=lambda smoothing: errors[smoothing])
+    best = min(errors, key=errors.__getitem__)
     return FlexibleModel(problem, fit, runs, best)
 
 
@@ -169,7 +172,7 @@ def _inputs(mapped: MappedRecording, states: Array) -> Array:
     return np.array(rows)
 
 
-def _velocities(module: object, y: Array) -> Array:
+def _velocities(module: Any, y: Array) -> Array:
     motion = module.pose_and_velocities(y)
     return np.array([motion.u, motion.v, motion.r, motion.phi, motion.p])
 
