@@ -152,6 +152,9 @@ class LogSignsEntry(TypedDict):
     held_out_unexplained: float  # the share `unexplained` on held-out recordings
     held_out_structure: float  # [nats]
     held_out_structured: bool  # whether that structure is significant
+    unexplained_gain: float  # evidence for a force beyond the assumed disturbance [nats]
+    structured: bool  # whether the dependence with the evidence structure_gain is significant
+    estimated: bool  # whether the vessel file calls any of its numbers estimated
 
 
 class SignsEntry(TypedDict):

@@ -10,7 +10,7 @@ from boatsim.diagnosis.answer.schema import (
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
-from boatsim.diagnosis.open_set.decision import Decision
+from boatsim.diagnosis.open_set.decision import Decision, Judgement
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.open_set.probability import exceeds_range
 
@@ -49,20 +49,24 @@ def cause_statistics_entry(decision: Decision) -> SignsEntry:
             "held_out_unexplained": round(log.held_out_unexplained, 4),
             "held_out_structure": round(log.held_out_structure, 3),
             "held_out_structured": log.held_out_structured,
+            "unexplained_gain": round(log.unexplained_gain, 3),
+            "structured": log.structured,
+            "estimated": log.estimated,
         },
     }
 
 
-def reason_for_doubt(signs: Consistency, log: LogSigns, config: DecideConfig) -> str:
+def reason_for_doubt(judged: Judgement, log: LogSigns, config: DecideConfig) -> str:
     """Return the clearest reason, in words, to doubt that an effect is a true cause.
 
     The effect may be a stand-in that only imitates another, unmodelled cause.
 
     Args:
-        signs: Statistics of the effect over the recordings.
+        judged: Statistics of the effect over the recordings.
         log: Statistics of the recordings as a whole.
         config: Settings of the decision.
     """
+    signs = judged.signs
     held_out = signs.held_out
     if abs(held_out.value - 1.0) > config.clear_deviation * held_out.sd:
         return (
@@ -79,6 +83,8 @@ def reason_for_doubt(signs: Consistency, log: LogSigns, config: DecideConfig) ->
             "its size is not the same at all times: it varies by "
             f"{100.0 * signs.between_times.excess:.0f} %"
         )
+    if judged.stochastic and signs.at_bound:
+        return "its spectrum is at the end of the range that waves have"
     if log.unexplained > config.clear_rest:
         return "much of the missing force remains even with this effect in the model"
     if exceeds_range(signs, config):

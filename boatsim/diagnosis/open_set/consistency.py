@@ -10,7 +10,7 @@ the filter's whitened prediction errors. These are independent from row to row, 
 grouped by any quantity that is known before the row.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +22,9 @@ from boatsim.diagnosis.fit import jacobian
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.open_set.effect_axes import effect_axes
+from boatsim.diagnosis.open_set.stochastic_size import VarianceScore
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
-from boatsim.physics.base import Array, Effect
+from boatsim.physics.base import Array, Effect, RandomForce
 
 
 @dataclass(frozen=True)
@@ -139,24 +140,23 @@ def effect_consistency(
     fitted = _linearised(problem, best)
     parts = _parts_in_time(problem, config.time_parts)
     ranges = list(_ranges(problem, best))
+    rates = [f"{axis} rate" for axis in problem.program.vessel.dof]
     unseen_problem = problem.with_recordings(held_out)
     unseen = _linearised(unseen_problem, best) if held_out else None
     found = {}
     for name, without in without_each.items():
-        size = _change_by_factor(best, problem.candidates[name])
-        direction = _direction(best, fitted.jacobian, name, size)
-        nuisance = _nuisance(best, fitted.jacobian, name, size)
-        times = _factors(fitted.whitened, direction, nuisance, parts, config)
-        runs = _factors(fitted.whitened, direction, nuisance, _recordings(problem), config)
+        part = _size_on_parts(problem, best, fitted, name)
+        times, runs = part(parts), part(_recordings(problem))
         worst, quantity = Variation(0.0, 0.0, 0), ""
         for words, groups in ranges:
-            factors = _factors(fitted.whitened, direction, nuisance, groups, config)
-            variation = _variation(*factors, config)
+            if words in rates and isinstance(problem.candidates[name], RandomForce):
+                continue  # estimated with the rows themselves, the motion tells their forces
+            variation = _variation(*part(groups), config)
             if variation.ratio > worst.ratio or not quantity:
                 worst, quantity = variation, words
         unseen_factor, unseen_gain = Factor(0.0, config.unknown_factor_sd), 0.0
         if unseen is not None:
-            unseen_factor = _held_out_factor(best, fitted, unseen, name, size, config)
+            unseen_factor = _held_out_size(problem, unseen_problem, best, fitted, unseen, name)
             unseen_gain = _gain(unseen_problem, best, without)
         axes = effect_axes(problem, best, name)
         found[name] = Consistency(
@@ -173,6 +173,21 @@ def effect_consistency(
             _at_bound(best, name, problem.config.answer.at_bound),
         )
     return found
+
+
+def _size_on_parts(
+    problem: Problem, best: Fit, fitted: _Linearised, name: str
+) -> Callable[[NDArray[np.int_]], tuple[Array, Array]]:
+    """Return a function from groups of rows to the size of an effect on each, with covariance."""
+    config = problem.config.decide
+    effect = problem.candidates[name]
+    if isinstance(effect, RandomForce):
+        score = VarianceScore.of_effect(problem, best, name)
+        return lambda groups: score.sizes(groups, config.prior_factor_sd)
+    size = _change_by_factor(best, effect)
+    direction = _direction(best, fitted.jacobian, name, size)
+    nuisance = _nuisance(best, fitted.jacobian, name, size)
+    return lambda groups: _factors(fitted.whitened, direction, nuisance, groups, config)
 
 
 def _linearised(problem: Problem, fit: Fit) -> _Linearised:
@@ -279,6 +294,31 @@ def _variation(factors: Array, covariance: Array, config: DecideConfig) -> Varia
     scale = float(weights.sum() - np.sum(weights**2) / weights.sum())
     excess = max(0.0, (chi_square - dof) / scale) if scale > 0.0 else 0.0
     return Variation(float(np.sqrt(excess)), chi_square, dof, scale / dof)
+
+
+def _held_out_size(
+    problem: Problem,
+    unseen_problem: Problem,
+    best: Fit,
+    fitted: _Linearised,
+    unseen: _Linearised,
+    name: str,
+) -> Factor:
+    """Return the size of an effect on held-out recordings, given the fit to the others."""
+    config = problem.config.decide
+    effect = problem.candidates[name]
+    if not isinstance(effect, RandomForce):
+        change = _change_by_factor(best, effect)
+        return _held_out_factor(best, fitted, unseen, name, change, config)
+    if not np.isfinite(unseen.whitened).all():
+        return Factor(0.0, config.unknown_factor_sd)
+    sd = config.prior_factor_sd
+    variance = 0.0
+    for one, passes in ((problem, fitted), (unseen_problem, unseen)):
+        everything = np.zeros(len(passes.whitened), dtype=int)
+        size, covariance = VarianceScore.of_effect(one, best, name).sizes(everything, sd)
+        variance += float(covariance[0, 0])
+    return Factor(float(size[0]), float(np.sqrt(variance)))
 
 
 def _held_out_factor(

@@ -34,6 +34,9 @@ class LogSigns:
         held_out_structure: Evidence of the largest such dependence on held-out recordings [nats],
             beyond what the uncertainty of the parameters explains.
         held_out_structured: Whether that dependence is significant.
+        unexplained_gain: Evidence for a force beyond the assumed disturbance [nats].
+        structured: Whether the dependence with the evidence `structure_gain` is significant.
+        estimated: Whether the vessel file calls any of its numbers estimated.
     """
 
     coefficient_shift: float
@@ -45,6 +48,9 @@ class LogSigns:
     held_out_unexplained: float = 0.0
     held_out_structure: float = 0.0
     held_out_structured: bool = False
+    unexplained_gain: float = 0.0
+    structured: bool = False
+    estimated: bool = False
 
 
 NO_STRUCTURE = Structure("", "", 0.0, 1.0, 0, False)
@@ -78,6 +84,9 @@ def unknown_cause_indicators(
         remains / threshold,
         structure.gain,
         structure.significant,
+        float(ranking.left_over),
+        ranking.structure.significant,
+        bool(problem.program.vessel.estimated),
     )
 
 

@@ -47,6 +47,10 @@ def logistic_features(
     unseen = Variation(0.0, off_chi_square, 1, held_out.sd**-2)
     alternative = consistency.alternative_gain / max(effect.gain, least)
     structure = log_signs.structure_gain / max(log_signs.effects_gain, least)
+    remains = max(log_signs.unexplained_gain, log_signs.structured * log_signs.structure_gain)
+    remains = max(remains - config.law_error * max(log_signs.effects_gain, 0.0), 0.0)
+    # An estimated model leaves force of its own, which tells nothing about the effect
+    remainder = 0.0 if log_signs.estimated else remains / (remains + max(effect.gain, least))
     held_out_gain = log(max(consistency.held_out_gain, config.least_held_out_gain))
     shift, most_shift = log_signs.coefficient_shift, config.largest_coefficient_shift
     return {
@@ -61,12 +65,14 @@ def logistic_features(
         "ranges_apart": _within(ranges.excess, 0.0, config.largest_variation),
         "ranges_constant": rough * _log_odds_of_constant_size(ranges, config),
         "unexplained": unexplained,
+        "remainder": remainder,
         "structure": _within(structure, 0.0, config.largest_structure),
         "alternative": _within(alternative, 0.0, config.largest_alternative),
         "prior_distance": log1p(consistency.prior_distance),
         "exceeds_range": float(exceeds_range(consistency, config)),
-        "stochastic": float(stochastic),
-        "stochastic_gain": float(stochastic) * held_out_gain,
+        "stochastic_at_bound": float(stochastic and consistency.at_bound),
+        "stochastic_times": stochastic * _within(times.ratio - 1.0, 0.0, config.largest_ratio),
+        "stochastic_ranges": stochastic * _within(ranges.ratio - 1.0, 0.0, config.largest_ratio),
         "look_alikes": float(len(effect.tied_with)),
         "coefficient_shift": _within(shift, 0.0, most_shift),
         "effects": log(max(log_signs.effects, 1)),

@@ -89,6 +89,41 @@ def test_odds_of_a_constant_size_are_those_of_normal_distributions() -> None:
     assert found == pytest.approx(odds)
 
 
+def remainder(log_signs: LogSigns) -> float:
+    return logistic_features(EFFECT, False, EXTREME, log_signs, CONFIG)["remainder"]
+
+
+def test_what_remains_unexplained_counts_relative_to_the_effect() -> None:
+    log_signs = LogSigns(0.0, 1.0, 1.0, 0.0, 0.0, 1)
+    assert remainder(log_signs) == 0.0
+    assert remainder(replace(log_signs, unexplained_gain=EFFECT.gain)) == 0.5
+    assert remainder(replace(log_signs, unexplained_gain=1e6)) == pytest.approx(1.0, abs=1e-4)
+    # a dependence on the motion counts if it is significant
+    chance = replace(log_signs, structure_gain=3.0 * EFFECT.gain)
+    assert remainder(chance) == 0.0
+    assert remainder(replace(chance, structured=True)) == 0.75
+    # identified laws may be wrong by a share of what they explain
+    exact = replace(log_signs, unexplained_gain=EFFECT.gain)
+    wrong = replace(exact, effects_gain=EFFECT.gain / CONFIG.law_error)
+    assert remainder(wrong) == 0.0
+
+
+def test_an_estimated_model_leaves_force_of_its_own() -> None:
+    log_signs = LogSigns(0.0, 1.0, 1.0, 0.0, 0.0, 1, unexplained_gain=1e6, estimated=True)
+    assert remainder(log_signs) == 0.0
+
+
+def test_only_a_stochastic_force_is_doubted_for_one_period_and_a_varying_size() -> None:
+    signs = replace(EXTREME, between_times=Variation(0.0, 9.0, 3), at_bound=True)
+    sea = logistic_features(EFFECT, True, signs, LOG, CONFIG)
+    force = logistic_features(EFFECT, False, signs, LOG, CONFIG)
+    assert (sea["stochastic_at_bound"], sea["stochastic_times"]) == (1.0, 2.0)
+    assert (force["stochastic_at_bound"], force["stochastic_times"]) == (0.0, 0.0)
+    wild = replace(signs, between_times=Variation(0.0, 1e3, 3))
+    largest = logistic_features(EFFECT, True, wild, LOG, CONFIG)["stochastic_times"]
+    assert largest == CONFIG.largest_ratio
+
+
 def test_a_parameter_at_a_bound_counts_if_a_recording_requires_more() -> None:
     assert exceeds_range(EXTREME, CONFIG)
     assert not exceeds_range(EXTREME, replace(CONFIG, size_tolerance=0.3))
@@ -96,8 +131,8 @@ def test_a_parameter_at_a_bound_counts_if_a_recording_requires_more() -> None:
 
 
 def test_the_log_of_the_odds_is_the_weighted_sum_within_its_limit() -> None:
-    found = {"stochastic": 1.0, "exceeds_range": 1.0}
-    odds = CONFIG.intercept + CONFIG.stochastic + CONFIG.exceeds_range
+    found = {"stochastic_at_bound": 1.0, "exceeds_range": 1.0}
+    odds = CONFIG.intercept + CONFIG.stochastic_at_bound + CONFIG.exceeds_range
     probability = probability_of_true_cause(found, CONFIG)
     assert log(probability / (1.0 - probability)) == pytest.approx(odds)
     narrow = replace(CONFIG, largest_log_odds=1.0)
