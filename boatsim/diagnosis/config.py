@@ -1682,12 +1682,10 @@ class SelectConfig:
         3, "count", "Rivals that are fitted in the place of each identified effect.", low=0
     )
     certainty: float = setting(
-        1.0, "sd", "Distance from zero effect from which a deterministic effect acts.", low=0.0
-    )
-    certainty_stochastic: float = setting(
-        2.0,
+        1.0,
         "sd",
-        "The same for a stochastic force, whose size is positive and therefore never exactly zero.",
+        "Distance from zero effect from which an effect acts. The rms value of a stochastic force, "
+        "of which a recording holds few periods, is uncertain even where it clearly acts.",
         low=0.0,
     )
     determined_share: float = setting(

@@ -213,11 +213,10 @@ def _improves_prediction(sets: CandidateSets, best: Fit, named: IdentifiedEffect
 def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     """Whether the size of an effect in a fit is significantly different from zero.
 
-    Several parameters may differ from zero together although none of them does alone. A stochastic
-    force must be further away: its size is positive, so that a search finds some in
-    pure noise. An effect acts, too, if the recordings determine one of its parameters that has no
-    meaning without it. A craft that never reaches its planing speed shows by how much it is slowed,
-    but not that speed. (The frequency of a stochastic force is determined by any trace of it.)
+    Several parameters may differ from zero together although none of them does alone. An effect
+    acts, too, if the recordings determine one of its parameters that has no meaning without it. A
+    craft that never reaches its planing speed shows by how much it is slowed, but not that speed.
+    (The frequency of a stochastic force is determined by any trace of it.)
 
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.
@@ -232,14 +231,13 @@ def differs_from_zero(sets: CandidateSets, best: Fit, name: str) -> bool:
     strength = [n for n in own if n in (kind.strength or params)]
     if not strength:
         return True
-    sure = config.certainty_stochastic if kind.random else config.certainty
     for parameter in strength:
         sd = best.value(name, parameter)[1]
-        if distance_from_zero(best, effect, parameter) > sure * sd:
+        if distance_from_zero(best, effect, parameter) > config.certainty * sd:
             return True
     if kind.random:
         return False
-    if jointly_differ_from_zero(best, name, strength, sure):
+    if jointly_differ_from_zero(best, name, strength, config.certainty):
         return True
     for parameter, free in own.items():
         narrow = best.value(name, parameter)[1] < config.determined_share * free.sd
