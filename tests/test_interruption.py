@@ -155,6 +155,7 @@ def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_leaves_all_but_the_last_second(
     endless: Path, tmp_path: Path
 ) -> None:

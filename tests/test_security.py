@@ -313,6 +313,7 @@ def test_8_names_do_not_become_code(
     assert program.module.HELD == 1 and not (tmp_path / "ran").exists()
 
 
+@pytest.mark.slow
 def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
     file, ran = with_slime(tmp_path)
     twin = tmp_path / "twin.toml"

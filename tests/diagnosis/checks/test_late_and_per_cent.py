@@ -151,6 +151,7 @@ def test_a_rate_that_is_late_is_shifted_itself(tmp_path: Path, mine: Path) -> No
     assert entry["lines"] == ["[latency]", "r_radps = 0.5"]
 
 
+@pytest.mark.slow
 def test_per_cent_within_the_newtons_of_the_channel_are_found(tmp_path: Path, mine: Path) -> None:
     log = simulated(tmp_path, str(mine), GOALS["mine"])
     path = logged(log, tmp_path, str(mine), GOALS["mine"], {})

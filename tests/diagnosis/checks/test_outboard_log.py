@@ -73,6 +73,7 @@ def turned(log: Columns, degrees: float) -> Columns:
     return log | {"psi_rad": log["psi_rad"] + np.radians(degrees)}
 
 
+@pytest.mark.slow
 def test_per_cent_within_the_range_of_newtons_are_found(rib: Vessel, tmp_path: Path) -> None:
     entry = found_in(in_per_cent(sailed(rib)), rib, tmp_path)[0]
     assert entry["name"] == "command_unit" and "per cent" in entry["evidence"]
