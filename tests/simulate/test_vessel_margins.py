@@ -48,7 +48,7 @@ def test_analytic_and_simulated_delay_margins_of_the_joystick_agree() -> None:
     ("controller", "loads"),
     [
         long("l1_joystick", ("heavy", "narrow")),
-        ("l1_joystick_sway", ("heavy", "wide")),
+        long("l1_joystick_sway", ("heavy", "wide")),
         long("l1_joystick_blind", ("light",)),
         ("pid_autopilot", ("light",)),
     ],
