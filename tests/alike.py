@@ -1,4 +1,4 @@
-"""Cases that are alike: the default tests try the first few, the slow ones all of them."""
+"""Cases that are alike: the default tests try the first few, the slow and long ones all of them."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -15,3 +15,8 @@ def few(cases: Iterable[Any], kept: int = 3) -> list[Any]:
 def slow(case: Any) -> Any:
     """One case among the slow tests."""
     return pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.slow)
+
+
+def long(*case: Any) -> Any:
+    """One case among the long tests, which are run before a release."""
+    return pytest.param(*case, marks=[pytest.mark.slow, pytest.mark.long])

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from alike import long, slow
 from runs import found
 
 from benchmarks import golden
@@ -23,7 +24,11 @@ from benchmarks.golden import (
 )
 from boatsim.simulate.evaluation import Metric
 
-TRACKED = scenarios_with_metrics()
+STORED = [
+    name
+    for file in sorted(path_of("joystick_boat/sway_1").parent.glob("*.json"))
+    for name in golden.read_values(file)
+]
 OLD = {
     "yaw_rate_inf": {
         "today": 0.5,
@@ -39,12 +44,34 @@ def with_today(value: float | None) -> golden.Values:
     return {"yaw_rate_inf": OLD["yaw_rate_inf"] | {"today": value}}
 
 
-def by_speed(name: str) -> Any:
-    """The thesis' tests are always run, the other papers' many scenarios with the slow tests."""
-    return name if name.startswith("joystick_boat/") else pytest.param(name, marks=pytest.mark.slow)
+def family(name: str) -> tuple[str, str]:
+    """Vessel and first word of a scenario's name."""
+    vessel, _, rest = name.partition("/")
+    return vessel, rest.partition("_")[0]
 
 
-@pytest.mark.parametrize("name", [by_speed(name) for name in TRACKED])
+def marked_scenarios() -> list[Any]:
+    """Scenarios with stored metrics, and when they are run.
+
+    The tests of the thesis are always run. Of each family of other scenarios the first and the last
+    one are slow tests, those between them long ones.
+    """
+    families: dict[tuple[str, str], list[str]] = {}
+    for name in STORED:
+        families.setdefault(family(name), []).append(name)
+    marked: list[Any] = []
+    for name in STORED:
+        alike = families[family(name)]
+        if name.startswith("joystick_boat/"):
+            marked.append(name)
+        elif name in (alike[0], alike[-1]):
+            marked.append(slow(name))
+        else:
+            marked.append(long(name))
+    return marked
+
+
+@pytest.mark.parametrize("name", marked_scenarios())
 def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
     norms = found(name)[0]
     assert {n: (norm.value, norm.band) for n, norm in norms.items() if norm.ok is False} == {}
@@ -57,7 +84,7 @@ def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
     files = sorted(path_of("joystick_boat/sway_1").parent.glob("*.json"))
     stored = {name for file in files for name in golden.read_values(file)}
-    assert stored == set(TRACKED) and len(stored) >= 29
+    assert stored == set(scenarios_with_metrics()) and len(stored) >= 29
     assert [
         file for file in files if any(path_of(name) != file for name in golden.read_values(file))
     ] == []

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 
 from boatsim import interruption
 from boatsim.atomic_folder import atomic_folder
@@ -128,9 +129,7 @@ def endless(tmp_path: Path) -> Path:
 # ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", ["SIGINT", "SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", long("SIGHUP")])
 @pytest.mark.slow
 def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     name: str, endless: Path, tmp_path: Path
@@ -156,6 +155,7 @@ def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_leaves_all_but_the_last_second(
     endless: Path, tmp_path: Path
 ) -> None:
@@ -266,7 +266,7 @@ def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path)
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "all_of_them"), [("SIGTERM", True), ("SIGHUP", True), ("SIGINT", False)]
+    ("name", "all_of_them"), [("SIGTERM", True), long("SIGHUP", True), ("SIGINT", False)]
 )
 def test_workers_keep_what_they_have_when_a_signal_comes(
     name: str, all_of_them: bool, endless: Path, tmp_path: Path

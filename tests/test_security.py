@@ -19,6 +19,7 @@ import boats
 import numpy as np
 import pyarrow as pa
 import pytest
+from alike import long
 from pyarrow import parquet
 from typer.testing import CliRunner
 
@@ -312,6 +313,7 @@ def test_8_names_do_not_become_code(
     assert program.module.HELD == 1 and not (tmp_path / "ran").exists()
 
 
+@pytest.mark.slow
 def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
     file, ran = with_slime(tmp_path)
     twin = tmp_path / "twin.toml"
@@ -374,7 +376,7 @@ def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Pa
     assert len(places) == 2
 
 
-@pytest.mark.parametrize("damage", ["laws.py", "__init__.py", "*.nbi", "*.nbc", "cut"])
+@pytest.mark.parametrize("damage", ["laws.py", long("__init__.py"), "*.nbi", long("*.nbc"), "cut"])
 @pytest.mark.slow
 def test_13_a_damaged_cache_is_built_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str

@@ -12,7 +12,7 @@ import json
 import os
 import sys
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 if __name__ == "__main__":  # an import must not change how the program that imports this one runs
@@ -211,6 +211,31 @@ def output(name: str) -> str:
     return printed.getvalue()
 
 
+@contextlib.contextmanager
+def equal_runs_once() -> Iterator[None]:
+    """Run equal scenarios of the examples once within a `with` block.
+
+    Many examples begin with the same vessel without their effect, and equal scenarios have equal
+    runs.
+    """
+    import boatsim
+
+    run, known = boatsim.run, []
+
+    def run_once(scenario: boatsim.Scenario) -> boatsim.Run:
+        for other, result in known:
+            if other == scenario:
+                return result
+        known.append((scenario, run(scenario)))
+        return known[-1][1]
+
+    boatsim.run = run_once
+    try:
+        yield
+    finally:
+        boatsim.run = run
+
+
 def stored_outputs() -> dict[str, str]:
     """Return the stored output of each example by the name of its effect."""
     return tomllib.loads(OUTPUTS.read_text(encoding="utf-8"))
@@ -219,8 +244,9 @@ def stored_outputs() -> dict[str, str]:
 def store_outputs() -> None:
     """Run all examples and store what they print."""
     text = "# What the examples of the effects print: python docs/_ext/effect_examples.py\n"
-    for name in sorted(all_cases()):
-        text += f'{name} = """\n{output(name)}"""\n'
+    with equal_runs_once():
+        for name in sorted(all_cases()):
+            text += f'{name} = """\n{output(name)}"""\n'
     OUTPUTS.write_text(text, encoding="utf-8")
 
 
@@ -228,8 +254,10 @@ def differences() -> list[str]:
     """Run all examples and return a description of each that prints something else than stored."""
     found = []
     stored = stored_outputs()
-    for name in sorted(all_cases()):
-        shown, printed = stored.get(name, "").splitlines(), output(name).splitlines()
+    with equal_runs_once():
+        outputs = {name: output(name) for name in sorted(all_cases())}
+    for name, text in outputs.items():
+        shown, printed = stored.get(name, "").splitlines(), text.splitlines()
         if len(printed) != len(list(filter(None, shown))):
             found.append(f"{name} prints {printed}, stored is {shown}")
         elif message := first_difference(shown, printed):

@@ -413,6 +413,7 @@ def test_a_recording_that_is_right_is_used(command: str, place: Callable[..., Pa
 
 @few
 @given(content=recordings(decay()))
+@pytest.mark.slow
 def test_a_diagnosis_uses_a_recording_or_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import long
 from answers import diagnosed, named, nothing_missing
 from real_boat import FURTHER, Real, recorded
 from scipy.interpolate import CubicSpline
@@ -78,8 +79,8 @@ def test_a_perfect_gyro_names_nothing(tmp_path: Path) -> None:
     ("column", "error", "name", "true"),
     [
         ("r_radps", lambda t, r: r + 0.03, "yaw_rate_offset", {"offset_radps": 0.03}),
-        ("r_radps", lambda t, r: 1.08 * r, "yaw_rate_gain", {"gain_fraction": 0.08}),
-        ("r_radps", lambda t, r: r + 0.002 * t, "yaw_rate_drift", {"drift_radps2": 0.002}),
+        long("r_radps", lambda t, r: 1.08 * r, "yaw_rate_gain", {"gain_fraction": 0.08}),
+        long("r_radps", lambda t, r: r + 0.002 * t, "yaw_rate_drift", {"drift_radps2": 0.002}),
         ("psi_rad", delayed, "heading_delay", {"delay_s": 0.15}),
     ],
     ids=["offset", "gain", "drift", "delay"],

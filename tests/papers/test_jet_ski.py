@@ -208,6 +208,7 @@ def test_compiled_projection_is_the_textbook_one() -> None:
         )
 
 
+@pytest.mark.slow
 def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system() -> None:
     """theta (4, -4.5) unknown, C = 160/(s + 160), a step of 25: the known reference system gives y(1), y(2), y(5)."""
     am = [[0.0, 1.0], [-1.0, -1.4]]

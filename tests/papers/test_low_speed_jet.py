@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from alike import few
+from alike import few, long
 from runs import mean_of
 from scipy.signal import cont2discrete
 
@@ -290,7 +290,7 @@ def test_constant_push_leaves_the_pd_its_offset_and_l1_what_its_adaptation_forge
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("sea", "seeds"), [("4p5", 2), ("2p5", 2), ("1p5", 6)])
+@pytest.mark.parametrize(("sea", "seeds"), [("4p5", 2), long("2p5", 2), long("1p5", 6)])
 def test_l1_takes_the_mean_error_out_in_waves_and_no_rms(sea: str, seeds: int) -> None:
     """The mean error in the slowest waves, 1.5 rad/s, varies most between seeds."""
     pd, filtered, l1 = (f"waves_{sea}_{n}" for n in ("pd", "filter", "l1"))

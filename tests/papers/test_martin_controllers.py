@@ -594,6 +594,7 @@ def test_weighing_the_rudder_angle_loses_the_course_that_weighing_its_swing_keep
     assert found[True]["rudder_rms"] < 1.5 < 3.0 < found[False]["rudder_rms"]
 
 
+@pytest.mark.slow
 def test_a_faster_rudder_helps_at_resonance_only() -> None:
     def reduced(pid: str, other: str) -> float:
         rolls = [

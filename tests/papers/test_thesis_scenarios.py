@@ -131,6 +131,7 @@ def score() -> dict[str, float]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_weak_reverse_at_least_halves_the_distance_to_the_thesis(score: dict[str, float]) -> None:
     """Changing the reverse efficiency alone, 1.00 -> 0.694, brings J over all eight tests from 1.33
     to 0.41."""

@@ -449,6 +449,7 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
 # Approach
 
 
+@pytest.mark.slow
 def test_a_ship_with_a_bias_begins_her_turning_circle_without_a_yaw_rate() -> None:
     """The Mariner's propeller turns her; 1.1 deg of port helm hold her course."""
     found = []
@@ -498,6 +499,7 @@ def test_a_speed_that_is_given_is_kept_and_a_helm_that_is_too_weak_stays_midship
     assert weak.helm == 0.0 and list(weak.state) == ["u"]
 
 
+@pytest.mark.slow
 def test_waves_do_not_change_the_helm_of_the_approach() -> None:
     waves = {"use": "irregular_sea", "significant_height": 0.2, "modal_period": 3.0, "toward": 1.0}
     boat = vessel.load_vessel("otter").with_effect(waves)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 
 from boatsim.control.allocation import Outboards
 from boatsim.control.axis import AXIS, filtered_disturbance
@@ -46,9 +47,9 @@ def test_analytic_and_simulated_delay_margins_of_the_joystick_agree() -> None:
 @pytest.mark.parametrize(
     ("controller", "loads"),
     [
-        ("l1_joystick", ("heavy", "narrow")),
-        ("l1_joystick_sway", ("heavy", "wide")),
-        ("l1_joystick_blind", ("light",)),
+        long("l1_joystick", ("heavy", "narrow")),
+        long("l1_joystick_sway", ("heavy", "wide")),
+        long("l1_joystick_blind", ("light",)),
         ("pid_autopilot", ("light",)),
     ],
 )

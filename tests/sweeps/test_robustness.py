@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import long
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput
@@ -109,8 +110,15 @@ def test_a_loop_of_enormous_gain_survives_no_delay() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loads", [("light", "wide"), ("heavy", "narrow")])
-@pytest.mark.parametrize("name", ["l1_joystick", "pid_autopilot"])
+@pytest.mark.parametrize(
+    ("name", "loads"),
+    [
+        ("l1_joystick", ("light", "wide")),
+        long("l1_joystick", ("heavy", "narrow")),
+        long("pid_autopilot", ("light", "wide")),
+        ("pid_autopilot", ("heavy", "narrow")),
+    ],
+)
 def test_the_delay_survived_is_close_to_the_delay_margin(name: str, loads) -> None:
     vessel = boat(*loads)
     margin = min(row.delay_s for row in margins_on_vessel(controllers(name)[name], vessel))

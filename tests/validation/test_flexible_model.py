@@ -15,8 +15,8 @@ from validation.real.gaussian_process import GaussianProcess, fit_gaussian_proce
 
 def test_a_process_gives_a_function_of_one_input_and_ignores_another() -> None:
     rng = np.random.default_rng(3)
-    X = rng.uniform(-2.0, 2.0, (400, 2))
-    process = fit_gaussian_process(X, np.sin(2.0 * X[:, 0]) + 0.05 * rng.standard_normal(400))
+    X = rng.uniform(-2.0, 2.0, (200, 2))
+    process = fit_gaussian_process(X, np.sin(2.0 * X[:, 0]) + 0.05 * rng.standard_normal(200))
     for x in np.linspace(-1.8, 1.8, 9):
         for other in (-1.0, 1.0):
             assert process.predict(np.array([x, other])) == pytest.approx(np.sin(2.0 * x), abs=0.06)
@@ -52,6 +52,7 @@ def turning_boat() -> tuple[Problem, Fit]:
     return problem, fit_noise(problem, problem.nominal_hypothesis())
 
 
+@pytest.mark.slow
 def test_without_a_missing_force_the_flexible_model_is_the_one_that_it_extends() -> None:
     problem, fit = turning_boat()
     mapped = problem.recordings[0]

@@ -7,6 +7,7 @@ Here are those that a boat in the plane shows and that no other test diagnoses o
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from answers import diagnosed, named, nothing_missing
@@ -87,7 +88,27 @@ CASES = (
 )
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.entry)
+# Other tests diagnose the first three on other data, or an effect of the same kind is among the rest.
+REPEATED = {
+    "current",
+    "thrust_lag",
+    "tether",
+    "thrust_imbalance",
+    "cubic_damping",
+    "forward_speed_damping",
+    "lateral_centre_shift",
+}
+
+
+def marked(case: Case) -> Any:
+    """A case, among the long tests if its statement is repeated."""
+    marks = []
+    if case.entry in REPEATED:
+        marks.append(pytest.mark.long)
+    return pytest.param(case, marks=marks, id=case.entry)
+
+
+@pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_an_entry_is_named_with_its_values(tmp_path: Path, case: Case) -> None:
     runs = [recorded(case.real, seed, case.hold, case.start) for seed in (1, 2, 3)]
     named(diagnosed(runs, tmp_path, "trial_boat", FURTHER), case.entry, case.true, case.more)

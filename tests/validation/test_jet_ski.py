@@ -61,6 +61,7 @@ def values(found: Any) -> dict[str, Array]:
     }
 
 
+@pytest.mark.long
 def test_hidden_planing_lag_is_named_with_its_two_numbers_and_helps_on_unseen_throttle_steps(
     tmp_path: Path,
 ) -> None:
@@ -101,6 +102,7 @@ def test_turn_asymmetry_is_named_as_offset_and_asymmetry(tmp_path: Path) -> None
     assert rms["patched"] < 0.5 * rms["recalibrated"]
 
 
+@pytest.mark.long
 def test_speed_loss_in_turns_left_out_is_named_with_alpha_3(tmp_path: Path) -> None:
     boat = nominal_without(tmp_path, "speed_loss_in_turn")
     found = answer(steered, Craft(blunt=True), tmp_path, str(boat))

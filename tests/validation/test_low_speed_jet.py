@@ -92,6 +92,7 @@ def test_waves_are_not_taken_for_a_disturbance(tmp_path: Path) -> None:
     assert named(found)["wave_forcing"]["frequency_radps"]["value"] == pytest.approx(2.5, rel=0.25)
 
 
+@pytest.mark.long
 def test_waves_without_their_entry_are_unknown_rather_than_a_yaw_moment(tmp_path: Path) -> None:
     other_sea = Real(sea=0.04, sea_frequency=1.5)
     found = diagnosed(tmp_path, Real(sea=0.054), other_sea, without=("wave_forcing",))

@@ -258,6 +258,7 @@ def test_a_slow_servo_is_named_and_a_sound_one_is_not(tmp_path: Path, slow: floa
     assert heading["patched"] < 0.2 * heading["recalibrated"]
 
 
+@pytest.mark.long
 def test_cross_flow_at_four_knots_is_seen_and_its_look_alike_told(tmp_path: Path) -> None:
     """Zig-zags so slow that the square of the drift counts; sway and yaw drag axis by axis look the
     same there."""

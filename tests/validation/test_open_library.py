@@ -57,6 +57,7 @@ def drawn(folder: Path, number: int) -> list[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_twenty_entries_that_explain_nothing_change_no_verdict(tmp_path: Path) -> None:
     library = drawn(tmp_path, 20)
     for trial in sorted(p for p in TRIALS.iterdir() if p.is_dir()):

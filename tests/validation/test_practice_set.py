@@ -77,6 +77,7 @@ def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_stronger_disturbance_pushes_more_and_its_level_may_be_kept_back(tmp_path: Path) -> None:
     rough = replace(CHEAP, disturbance=3.0, level_stated=False)
     assert rough.nominal().ambient() == pytest.approx(3.0 * CHEAP.nominal().ambient())

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from real_boat import Real, recorded
 
 from boatsim.diagnosis import pipeline
@@ -110,7 +111,7 @@ EFFECTS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seconds", [6.0, 12.0])
+@pytest.mark.parametrize("seconds", [6.0, long(12.0)])
 @pytest.mark.parametrize("case", EFFECTS)
 def test_a_short_run_names_what_is_there_or_nothing(
     case: str, seconds: float, tmp_path: Path

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
@@ -72,6 +73,7 @@ def turned(log: Columns, degrees: float) -> Columns:
     return log | {"psi_rad": log["psi_rad"] + np.radians(degrees)}
 
 
+@pytest.mark.slow
 def test_per_cent_within_the_range_of_newtons_are_found(rib: Vessel, tmp_path: Path) -> None:
     entry = found_in(in_per_cent(sailed(rib)), rib, tmp_path)[0]
     assert entry["name"] == "command_unit" and "per cent" in entry["evidence"]
@@ -114,7 +116,7 @@ def test_on_one_course_nobody_can_tell_a_current_from_a_compass(rib: Vessel) -> 
     assert heading_offset([Recording("run", t, log | {"steer_motor_rad": 0.0 * t})], rib) is None
 
 
-@pytest.mark.parametrize("imported", [False, True])
+@pytest.mark.parametrize("imported", [long(False), True])
 @pytest.mark.slow
 def test_what_is_advised_may_be_written_at_the_end_of_the_file(
     rib: Vessel, imported: bool, tmp_path: Path

@@ -8,6 +8,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
+from alike import long
 from pushed_boat import BOAT, Late, laid, sail
 from scipy.integrate import solve_ivp
 
@@ -242,7 +243,7 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     ("factor", "late"),
     [
         ("recent_thrust_port_N", (5.0, lambda c: float(c[0]))),
-        ("recent_thrust", (3.0, lambda c: float(c[0] + c[1]))),
+        long("recent_thrust", (3.0, lambda c: float(c[0] + c[1]))),
     ],
 )
 def test_a_side_force_with_the_thrust_of_the_last_seconds_is_described(

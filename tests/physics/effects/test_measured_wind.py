@@ -270,7 +270,7 @@ def weather(t: float) -> tuple[float, float]:
 
 def sailed(name: str, seed: int) -> Recording:
     """The trial boat in that wind from scipy's integrator; nothing here is the tool's."""
-    rng, every, rows = np.random.default_rng(seed), 0.1, 500
+    rng, every, rows = np.random.default_rng(seed), 0.1, 300
     levels = np.column_stack(
         [rng.uniform(-0.9, 0.9, (rows // 25, 2)), rng.uniform(-0.6, 0.6, (rows // 25, 2))]
     )

@@ -215,6 +215,7 @@ def test_sway_force_of_a_short_sea_is_the_integral_over_the_spectrum(period: flo
 
 
 @SHORT
+@pytest.mark.slow
 def test_roll_moment_converges_when_the_cut_rises(period: float) -> None:
     modal = 2 * pi / period
     found = []

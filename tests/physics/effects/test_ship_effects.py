@@ -10,7 +10,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from alike import slow
+from alike import long, slow
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis import loading, pipeline
@@ -418,7 +418,7 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
             Real(drift=2500.0, brake=60.0),
             {"speed_loss_in_turn": {"mass_kg": 2500.0}, "steering_drag": {"drag_Nprad2": 60.0}},
         ),
-        (
+        long(
             Real(hull=1.0, blade=0.8, drift=2500.0),
             {
                 "speed_loss_in_turn": {"mass_kg": 2500.0},

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
@@ -89,7 +90,7 @@ def engine_states(vessel: Vessel) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.parametrize("name", ["joystick_boat", "otter", "jet_ski"])
+@pytest.mark.parametrize("name", ["joystick_boat", long("otter"), "jet_ski"])
 @pytest.mark.slow
 def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -168,12 +169,14 @@ def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
     assert np.ptp(found[0][:, first]) > 0.01
 
 
+# The otter has six freedoms: numba needs half a minute.
+@pytest.mark.parametrize("name", ["joystick_boat", long("otter")])
 @pytest.mark.slow
 def test_filter_and_free_runs_give_the_numbers_of_numba_to_the_last_bit(
-    monkeypatch: pytest.MonkeyPatch,
+    name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found: list[Any] = []
-    vessel = load_vessel("otter")  # six freedoms: numba needs more than half a minute
+    vessel = load_vessel(name)
     for switch in ("1", "0"):
         monkeypatch.setenv("BOATSIM_NATIVE", switch)
         program, _ = diagnosis_program(vessel)
