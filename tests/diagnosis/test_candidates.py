@@ -320,6 +320,7 @@ def test_concealed_effects_are_named_with_their_values(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(
     tmp_path: Path,
 ) -> None:

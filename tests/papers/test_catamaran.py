@@ -97,6 +97,7 @@ def test_table_3_needs_the_criterion_of_99_percent() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_published_kinematics_let_the_boat_arrive_where_the_right_ones_do_not() -> None:
     assert (
         values("disturbance_6")["time"] is None
@@ -484,6 +485,7 @@ def test_case_2_a_disturbance_off_the_mass_centre_is_named_with_its_lever(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) -> None:
     """9 kg instead of 7: D grows from 45 to 52 mm, which raises the added mass in sway and yaw by a
     third."""
@@ -496,6 +498,7 @@ def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("trials", "coefficient"), [([1], 80.0), long([3, 5, 6], 80.0), ([3, 5, 6], 400.0)]
 )

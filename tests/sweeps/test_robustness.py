@@ -113,7 +113,7 @@ def test_a_loop_of_enormous_gain_survives_no_delay() -> None:
 @pytest.mark.parametrize(
     ("name", "loads"),
     [
-        ("l1_joystick", ("light", "wide")),
+        long("l1_joystick", ("light", "wide")),
         long("l1_joystick", ("heavy", "narrow")),
         long("pid_autopilot", ("light", "wide")),
         ("pid_autopilot", ("heavy", "narrow")),

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from pyarrow import parquet
 from scipy import stats
 
@@ -499,7 +500,7 @@ def once_it_has(out: Path, lines: int, running: "subprocess.Popen[str]") -> None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [1, long(2)])
 def test_killed_and_continued_it_ends_with_the_same_bytes(
     short: str, tmp_path: Path, jobs: int
 ) -> None:

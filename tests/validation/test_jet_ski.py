@@ -78,6 +78,7 @@ def test_hidden_planing_lag_is_named_with_its_two_numbers_and_helps_on_unseen_th
     assert rms["patched"] < 0.1 * rms["recalibrated"]
 
 
+@pytest.mark.long
 def test_drag_that_dies_out_far_faster_than_at_rest_is_followed_and_named(tmp_path: Path) -> None:
     """Its rate at speed, 40 times that at rest, is beyond the steps that suit the craft as
     written."""

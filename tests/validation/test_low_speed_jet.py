@@ -52,6 +52,7 @@ def yaw_rate_error(found: Diagnosis, seed: int, real: Real, patched: bool) -> fl
     return float(np.degrees(np.std(run[:, YAW_RATE] - laid.measured[: len(run), column])))
 
 
+@pytest.mark.long
 def test_leak_and_delay_are_named_together_and_recovered(tmp_path: Path) -> None:
     real = Real(leak=0.25, late=0.4)
     found = diagnosed(
@@ -80,6 +81,7 @@ def test_leak_and_delay_are_named_together_and_recovered(tmp_path: Path) -> None
         )  # of its power beyond the gyro's noise [deg/s]
 
 
+@pytest.mark.long
 def test_another_time_constant_astern_is_named(tmp_path: Path) -> None:
     effects = named(diagnosed(tmp_path, Real(astern_time=1.2)))
     assert set(effects) == {"astern_time_constant"}
@@ -101,6 +103,7 @@ def test_waves_without_their_entry_are_unknown_rather_than_a_yaw_moment(tmp_path
     assert next(c["gain_nats"] for c in answer["candidates"] if c["name"] == "steady_force") < 0.0
 
 
+@pytest.mark.long
 def test_a_steady_push_is_named_as_one(tmp_path: Path) -> None:
     effects = named(diagnosed(tmp_path, Real(pushed=0.02)))
     assert set(effects) == {"steady_force"}

@@ -283,6 +283,7 @@ def test_cross_flow_at_four_knots_is_seen_and_its_look_alike_told(tmp_path: Path
     assert heading["patched"] < 1.5 * 2e-3 and heading["patched"] < 0.35 * heading["recalibrated"]
 
 
+@pytest.mark.long
 def test_in_a_known_seaway_quadratic_damping_is_told_from_a_weak_controller(tmp_path: Path) -> None:
     """A wave maker's beam sea, small and large: the simulation rolls too much in the large one."""
     period, quadratic, count = 6.832, 1.0 * ROLL, 12

@@ -63,6 +63,7 @@ NOTHING_TO_SEE = {
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
     """An Otter that lies still in water far calmer than is tolerated; instruments of 6 mm and 4
     mrad alone."""

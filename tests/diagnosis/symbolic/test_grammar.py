@@ -242,6 +242,7 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_side_force_with_the_square_of_the_yaw_rate_is_described_as_one() -> None:
     found = diagnosed(even_in_yaw, even_in_yaw, even_in_yaw)
     answer = found.findings.answer
@@ -280,6 +281,7 @@ def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vesse
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_times_are_those_at_which_it_acts() -> None:
     found = diagnosed(of_one_run, nothing, nothing)
     (event,) = found.findings.described
