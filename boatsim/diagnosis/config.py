@@ -2267,10 +2267,11 @@ class DescribeConfig:
         low=0,
     )
     budget: int = setting(
-        250_000_000,
+        750_000_000,
         "steps x dof",
         "Work of the description, counted as in `select.budget`; then no further term is sought. "
-        "Recordings of a minute and a half need 2 to 10 million.",
+        "Recordings of a minute and a half need 2 to 10 million, half an hour of "
+        "zig-zags between 250 and 750 million.",
         low=1,
     )
     fitted_terms: int = setting(
