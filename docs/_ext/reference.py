@@ -5,6 +5,7 @@ Sphinx is imported only when the extension is set up, so that tests can read the
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +45,8 @@ SECTIONS = {  # folder of pages -> heading and introduction of its index
 }
 
 
-def pages() -> dict[str, str]:
+@cache
+def pages() -> Mapping[str, str]:
     """Return all pages: path below `reference/` without the suffix -> text."""
     texts = dict(_command_pages())
     for kind in CLASSES:
