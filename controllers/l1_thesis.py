@@ -8,10 +8,15 @@ from math import nan, pi, radians, sin
 from typing import Any, ClassVar
 
 from boatsim.control.adaptive import solve_lyapunov
-from boatsim.control.adaptive_loop import project_rate
 from boatsim.control.allocation import limit
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record_type, unlocked
+from boatsim.control.gradient_adaptation import (
+    STATE_ESTIMATES,
+    EstimateBounds,
+    adapt_state_estimates,
+    estimated_acceleration,
+)
 from boatsim.physics.base import param
 
 MODEL = ((0.0, -1.0), (1.0, -1.4))  # [1/s] A_m of sway velocity and yaw rate, T8; b = I
@@ -21,60 +26,8 @@ MODULATED_AT = radians(23.6)  # steering angle at which modulated power is the n
 FILTER_ZERO, FILTER_POLE = 17.7, 50.0  # [rad/s] of the low-pass, AppH
 # Bounds are assumptions, wide enough for the plants of T10 to T14 and the disturbance of T12.
 OMEGA, OTHERS = (0.5, 2.0), (-2.0, 2.0)
-# What is unknown of one state, xh' = A_m xh + omega input + theta'x + sigma, and the input in force
-ROW = record_type("omega", "theta_v", "theta_r", "sigma", "given")
+LIMITS = EstimateBounds(*OMEGA, *OTHERS, *OTHERS)
 BOUNDS = {"omega": OMEGA, "theta_v": OTHERS, "theta_r": OTHERS, "sigma": OTHERS}
-
-
-@merged
-def estimated_acceleration(row: Any, v: float, r: float) -> float:
-    """Return the acceleration that the adaptive estimates predict from input and states.
-
-    Args:
-        row: Adaptive estimates of one state equation (sway or yaw).
-        v: Sway velocity [m/s].
-        r: Yaw rate [rad/s].
-    """
-    return row.omega * row.given + row.theta_v * v + row.theta_r * r + row.sigma
-
-
-@merged
-def step_estimate(
-    value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float
-) -> float:
-    """Return an adaptive estimate after one Euler step of the projected gradient law.
-
-    Args:
-        value: Estimate.
-        regressor: State, input or 1.
-        error: Entry of (xh - x)' P.
-        low: Lower bound.
-        high: Upper bound.
-        gain: Adaptation gain.
-        dt: Length of the step [s].
-    """
-    rate = gain * project_rate(value, -regressor * error, low, high)
-    return limit(value + dt * rate, low, high)
-
-
-@merged
-def adapt_state_estimates(
-    row: Any, error: float, v: float, r: float, gain: float, dt: float
-) -> None:
-    """Update the adaptive estimates of one state equation, equations E34 to E36 of the thesis.
-
-    Args:
-        row: Estimates of the state equation (sway or yaw), changed in place.
-        error: Entry of (xh - x)' P of the state.
-        v: Sway velocity [m/s].
-        r: Yaw rate [rad/s].
-        gain: Adaptation gain.
-        dt: Length of the step [s].
-    """
-    row.omega = step_estimate(row.omega, row.given, error, OMEGA[0], OMEGA[1], gain, dt)
-    row.theta_v = step_estimate(row.theta_v, v, error, OTHERS[0], OTHERS[1], gain, dt)
-    row.theta_r = step_estimate(row.theta_r, r, error, OTHERS[0], OTHERS[1], gain, dt)
-    row.sigma = step_estimate(row.sigma, 1.0, error, OTHERS[0], OTHERS[1], gain, dt)
 
 
 @merged
@@ -119,10 +72,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
             m.started = m.sway.omega = m.yaw.omega = 1.0
         vh, rh = m.vh, m.rh
         adapt_state_estimates(
-            m.sway, P_VV * (vh - v) + P_VR * (rh - r), v, r, q.adaptation, q.period
+            m.sway, P_VV * (vh - v) + P_VR * (rh - r), v, r, LIMITS, q.adaptation, q.period
         )
         adapt_state_estimates(
-            m.yaw, P_VR * (vh - v) + P_RR * (rh - r), v, r, q.adaptation, q.period
+            m.yaw, P_VR * (vh - v) + P_RR * (rh - r), v, r, LIMITS, q.adaptation, q.period
         )
         thrust = set_steering_angle(q, m, v, r)
         m.vh += q.period * (
@@ -157,7 +110,15 @@ class L1Thesis(CompiledController):
     # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo
     # is taken to be
     memory_type: ClassVar = record_type(
-        "started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW
+        "started",
+        "vh",
+        "rh",
+        "slow",
+        "fast",
+        "angle",
+        "reached",
+        sway=STATE_ESTIMATES,
+        yaw=STATE_ESTIMATES,
     )
 
     period: float = param(

@@ -79,13 +79,13 @@ def _make_controller(text: str) -> tuple[str, Controller]:
     for setting in settings:
         key, equals, number = setting.partition("=")
         try:
-            values[key.strip()] = float(number)
+            values[key.strip()] = _parse_value(number.strip())
         except ValueError:
             equals = ""
         if not equals:
             raise BadInput(
-                f"controller {text}: {setting!r} is no parameter; allowed is NAME,KEY=NUMBER, such "
-                "as l1_joystick,pole=1"
+                f"controller {text}: {setting!r} is no parameter; allowed is NAME,KEY=NUMBER, true "
+                "or false, such as l1_joystick,pole=1"
             )
     found = load_class("controller", name, named=True)
     try:
@@ -93,6 +93,13 @@ def _make_controller(text: str) -> tuple[str, Controller]:
     except BadInput as error:
         raise BadInput(f"controller {text}: {error}") from None
     return ",".join([Path(name).stem, *settings]), controller
+
+
+def _parse_value(text: str) -> float | bool:
+    """Number or switch of a parameter. Raises ValueError."""
+    if text in ("true", "false"):
+        return text == "true"
+    return float(text)
 
 
 def _parse_draw(text: str) -> SampledParameter:

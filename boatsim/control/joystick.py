@@ -40,21 +40,34 @@ REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING
 
 
 @merged
-def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Return the yaw moment [N m] by which a joystick controller follows a demanded yaw rate.
+def demanded_yaw_rate(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Return the yaw rate [rad/s] that a joystick controller has to reach, and integrate headings.
 
-    The rate is corrected for the heading error and limited.
+    It is the stick's rate, corrected for the heading error and limited.
 
     Args:
         q: Parameters of the controller.
         m: State of the controller.
         s: Sensor readings.
-        wanted: Demanded yaw rate [rad/s].
+        wanted: Yaw rate of the stick [rad/s].
     """
     if m.acted != 0.0:
         integrate_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
     bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
-    reference = limit(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
+    return limit(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
+
+
+@merged
+def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Return the yaw moment [N m] by which a joystick controller follows a demanded yaw rate.
+
+    Args:
+        q: Parameters of the controller.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Yaw rate of the stick [rad/s].
+    """
+    reference = demanded_yaw_rate(q, m, s, wanted)
     acted = m.acted != 0.0
     felt = filtered_disturbance(
         m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period

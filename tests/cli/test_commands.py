@@ -324,6 +324,10 @@ def test_robustness_prints_and_writes_the_largest_value_survived(tmp_path: Path)
     for wrong, hint in (("kq=1", "did you mean 'kp'"), ("kp=x", "allowed is NAME,KEY=NUMBER")):
         bad = boatsim("robustness", f"pid_autopilot,{wrong}", *words[2:])
         assert bad.exit_code == 2 and hint in bad.stderr
+    for value, code in (("true", 0), ("perhaps", 2)):
+        switch = f"l1_joystick_projection,input_as_published={value}"
+        place = ("--disturbance", "delay=2", "--out", str(tmp_path / value))
+        assert boatsim("robustness", switch, *words[2:], *place).exit_code == code
     missing = boatsim(*words, "--draw", "body.mas=uniform(1,2)")
     assert missing.exit_code == 2 and "did you mean 'body.mass'" in missing.stderr
 

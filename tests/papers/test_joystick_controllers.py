@@ -15,9 +15,12 @@ from boatsim.physics.content import load_class
 STILL = Sense(t=0.0, psi=0.0, r=0.0, ax=0.0, ay=0.0, u=nan, v=nan, x=nan, y=nan)
 AsPublished = load_class("controller", "l1_joystick_as_published")
 L1Joystick = load_class("controller", "l1_joystick")
+L1JoystickProjection = load_class("controller", "l1_joystick_projection")
 PidAutopilot = load_class("controller", "pid_autopilot")
 OpenLoop = load_class("controller", "open_loop")
-RIVALS = pytest.mark.parametrize("controller", [L1Joystick, PidAutopilot], ids=lambda c: c.__name__)
+RIVALS = pytest.mark.parametrize(
+    "controller", [L1Joystick, L1JoystickProjection, PidAutopilot], ids=lambda c: c.__name__
+)
 BOATS = {
     "S1": (0.19, 0.60),
     "S2": (0.28, 0.60),
@@ -401,6 +404,7 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
     ("name", "channels"),
     [
         ("l1_joystick", {"yaw", "surge"}),
+        ("l1_joystick_projection", {"yaw", "surge"}),
         ("l1_joystick_sway", {"yaw", "surge", "sway"}),
         ("l1_joystick_blind", {"yaw"}),
     ],
@@ -411,6 +415,45 @@ def test_every_channel_meets_the_l1_condition_for_every_input_gain(
     rows = stability_margins(load_class("controller", name)())
     assert {row.channel for row in rows} == channels
     assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
+
+
+def test_published_low_pass_does_not_meet_the_l1_condition() -> None:
+    """D(s) = 1.07 (s + 17.7) / (s (s + 50)) closes at 0.379 rad/s; 1.4 1/s are to be covered."""
+    rows = stability_margins(L1JoystickProjection(yaw_bandwidth=1.07 * 17.7 / 50.0))
+    worst = max(row.norm * row.needed for row in rows if row.channel == "yaw")
+    assert worst == pytest.approx(1.46, abs=0.01)
+
+
+@pytest.mark.parametrize("push", [-0.05, 0.05])
+def test_projected_estimates_stay_within_their_bounds_on_a_boat(push: float) -> None:
+    controller, boat, noise = L1JoystickProjection(), Turntable(push=push), random.Random(2)
+    for seconds, goal in ((10.0, {"sway_mps": 0.07}), (10.0, {"yaw_radps": 0.1})):
+        boat.run(controller, goal, seconds, noise)
+        for name, estimate in controller.estimates().items():
+            assert not estimate.value < estimate.low and not estimate.value > estimate.high, name
+
+
+def test_two_adaptive_laws_move_a_boat_alike() -> None:
+    """Both low-pass filters have 2 rad/s; the difference is that of the zero of D(s) and of the
+    commands, which are rounded to whole degrees."""
+    rates = {}
+    for controller in (L1Joystick(), L1JoystickProjection()):
+        boat, seen = Turntable(push=0.03), list[float]()
+        boat.run(controller, {"sway_mps": 0.07}, 20.0, seen=seen)
+        rates[type(controller)] = seen
+    pairs = list(zip(rates[L1Joystick], rates[L1JoystickProjection], strict=True))
+    largest = max(abs(rate) for rate in rates[L1Joystick])
+    assert max(abs(one - other) for one, other in pairs) < 0.3 * largest
+
+
+def test_one_euler_step_a_period_is_too_long_for_the_gain() -> None:
+    """The stability limit is 2 / sqrt(gain lambda_max(P)) = 0.0155 s for slow states."""
+    largest = {}
+    for step in (0.002, 0.01, 0.08):
+        boat, seen = Turntable(push=0.03), list[float]()
+        boat.run(L1JoystickProjection(adaptation_step=step), {"sway_mps": 0.07}, 30.0, seen=seen)
+        largest[step] = max(abs(rate) for rate in seen[-100:])
+    assert largest[0.002] < 0.01 and largest[0.01] < 0.01 and largest[0.08] > 0.03
 
 
 def test_sway_is_held_at_the_speed_asked_for_where_it_is_measured() -> None:

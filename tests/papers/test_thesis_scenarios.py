@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
@@ -172,6 +173,29 @@ def test_corrected_controller_with_a_speed_sensor_meets_the_thesis_requirements_
 def test_gains_from_known_lags_meet_the_bars_of_the_corrected_controller(test: str) -> None:
     case = scenario.load(shipped(test), {"controller": {"use": "l1_joystick_lag"}})
     assert not over(mean([requested_metrics(run(case))]), CORRECTED[test.split("_")[0]])
+
+
+@pytest.mark.parametrize(
+    "drift_log",
+    [False, pytest.param(True, marks=pytest.mark.slow)],
+    ids=["gyro and speed", "drift log"],
+)
+@EACH_TEST
+def test_projected_gradient_law_meets_the_bars_of_the_corrected_controller(
+    test: str, drift_log: bool
+) -> None:
+    changes: dict[str, Any] = {"controller": {"use": "l1_joystick_projection"}}
+    if drift_log:
+        changes["sensor"] = [{"use": "drift_log"}]
+    done = run(scenario.load(shipped(test), changes))
+    norms = mean([requested_metrics(done)])
+    print(test, {name: round(value, 4) for name, value in norms.items()})
+    assert not over(norms, CORRECTED[test.split("_")[0]])
+    log = done.recording
+    for name in log.signals:
+        if f"{name}_low" in log.signals:
+            assert np.all(~(log[name] < log[f"{name}_low"])), name
+            assert np.all(~(log[name] > log[f"{name}_high"])), name
 
 
 @pytest.mark.parametrize("test", TESTS[:4])
