@@ -280,16 +280,16 @@ class StripWaveLoads(SeaParameters, Force):
             Name of the parameter -> value.
         """
         found = {"hull_beam": vessel.beam - self.hull_spacing}
-        beam = self._given("hull_beam", found)
+        beam = self._value_or_derived("hull_beam", found)
         box = self.length * beam * (2.0 if self.hull_spacing > 0.0 else 1.0)  # [m^2]
         found["block_coefficient"] = vessel.body.mass / (self.density * box * self.draught)
-        block = self._given("block_coefficient", found)
+        block = self._value_or_derived("block_coefficient", found)
         water = vessel.effect("hydrostatics")
         heave = getattr(water, "heave", 0.0)
         found["waterplane_coefficient"] = (1.0 + 2.0 * block) / 3.0
         if heave > 0.0:
             found["waterplane_coefficient"] = heave / (self.density * GRAVITY * box)
-        fullness = self._given("waterplane_coefficient", found)
+        fullness = self._value_or_derived("waterplane_coefficient", found)
         # Gyradius squared of a parabola, pointed at most, and that of the stiffness m g GM_L
         parabola = max(1.0 / 3.0 + 4.0 / 15.0 * (1.0 - 1.0 / fullness), POINTED)
         square = (0.5 * self.length) ** 2 * parabola
@@ -303,6 +303,6 @@ class StripWaveLoads(SeaParameters, Force):
         found["buoyancy"] = ahead
         return found
 
-    def _given(self, name: str, derived: dict[str, float]) -> float:
+    def _value_or_derived(self, name: str, derived: dict[str, float]) -> float:
         """Return the value of a parameter, or the derived one if it has none."""
         return float(getattr(self, name)) if self.has_value(name) else derived[name]
