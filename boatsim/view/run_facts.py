@@ -17,7 +17,13 @@ from boatsim.view.formatting import (
 
 ENVIRONMENT = {  # heading -> effects of the library that belong to it
     "Wind": ("wind", "fan_wind", "gusty_wind", "measured_wind", "measured_relative_wind"),
-    "Waves": ("irregular_sea", "filtered_sea", "wave_forcing", "yaw_rate_waves"),
+    "Waves": (
+        "irregular_sea",
+        "strip_wave_loads",
+        "filtered_sea",
+        "wave_forcing",
+        "yaw_rate_waves",
+    ),
     "Current": ("current",),
 }
 Settings = Mapping[str, object]

@@ -2,38 +2,28 @@
 
 from dataclasses import dataclass, replace
 from math import cos, pi, sin
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numba import njit
 
-from boatsim.errors import BadInput
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
-from boatsim.physics.debugging import interpreted
-from boatsim.physics.noise import seeded_realisation
-from boatsim.physics.param import name_code_parameter
-from boatsim.physics.terms import index_code
 from boatsim.physics.waves.dispersion import pressure_attenuation, wave_number
+from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.field import WaveField
 from boatsim.physics.waves.hull_integrals import beam_attenuation, wave_slope_integrals
-from boatsim.physics.waves.sea_state import (
-    SPECTRA,
-    components,
-    energy_above,
-    sea_state,
-    wave_component,
-    wave_direction,
-)
+from boatsim.physics.waves.sea_parameters import SeaParameters
+from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
 
-# Largest share of the energy above the cut: the significant height is then 1 % too low
-MOST_LOST = 0.02
 GRAVITY = particulars.GRAVITY
 
 
 @njit(forceinline=True)
-def heading_of_waves(bearing: float, m: Any, q: Any) -> tuple[float, float, float]:
+def heading_of_encounter(bearing: float, m: Any, q: Any) -> tuple[float, float, float]:
     """Return the direction of waves in body axes, and the ship's place along it.
+
+    With `course_kept` = 1 they are those on her initial course.
 
     Args:
         bearing: Direction to which the waves run [rad].
@@ -44,11 +34,10 @@ def heading_of_waves(bearing: float, m: Any, q: Any) -> tuple[float, float, floa
         Parts of the direction ahead and to starboard, and the distance [m] travelled by the ship
         through the water along the direction of the waves.
     """
-    ahead, across = cos(bearing), sin(bearing)  # direction of the waves in earth axes
     if q.course_kept != 0.0:
-        return ahead, across, ahead * q.speed * m.t
-    run = ahead * (m.x - m.water_north * m.t) + across * (m.y - m.water_east * m.t)
-    return m.cos_psi * ahead + m.sin_psi * across, m.cos_psi * across - m.sin_psi * ahead, run
+        ahead = cos(bearing)
+        return ahead, sin(bearing), ahead * q.speed * m.t
+    return heading_of_waves(bearing, m)
 
 
 @njit
@@ -68,7 +57,7 @@ def law(m: Any, q: Any) -> Wrench:
     Y = K = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
-    ahead, across, run = heading_of_waves(q.toward, m, q)
+    ahead, across, run = heading_of_encounter(q.toward, m, q)
     half = 0.5 * q.length
     # of water, per length of hull [N]
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
@@ -76,7 +65,7 @@ def law(m: Any, q: Any) -> Wrench:
     for k in range(int(sea.number)):
         w, amplitude, phase = wave_component(k, q, sea)
         if q.spreading > 0.0:
-            ahead, across, run = heading_of_waves(wave_direction(k, q), m, q)
+            ahead, across, run = heading_of_encounter(wave_direction(k, q), m, q)
         number = wave_number(w, q.depth)
         slope = number * amplitude * across
         theta = w * m.t - number * run + phase
@@ -97,7 +86,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 @dataclass(frozen=True)
-class IrregularSea(Force):
+class IrregularSea(SeaParameters, Force):
     """Forces of the slope of the waves of a spectrum, of one direction or spread about it.
 
     Sway force and yaw moment are integrals of the wave slope over the sections of an ellipsoid. The
@@ -174,16 +163,6 @@ class IrregularSea(Force):
     )
     law: ClassVar = law
 
-    spectrum: str = "bretschneider"  # one of `sea_state.SPECTRA`
-    significant_height: float = param(
-        0.0, low=0.0, high=30.0, unit="m", words="four times the rms of the elevation; 0: calm"
-    )
-    modal_period: float = param(
-        7.5, low=0.2, high=40.0, unit="s", words="period at the peak of the elevation spectrum"
-    )
-    toward: float = param(
-        0.0, low=-2 * pi, high=2 * pi, unit="rad", words="direction the waves run to"
-    )
     course_kept: float = param(
         0.0, low=0.0, high=1.0, unit="", words="1: encounter as on course north at `speed`"
     )
@@ -194,33 +173,6 @@ class IrregularSea(Force):
         unit="m/s",
         words="speed for course_kept = 1; default: that of the vessel's speed_hold",
         follows="speed_hold.speed?",
-    )
-    cut: float = param(
-        0.0,
-        low=0.0,
-        high=200.0,
-        unit="rad/s",
-        words="highest frequency; 0: four times the modal frequency",
-    )
-    components: float = param(
-        160.0, low=1.0, high=2000.0, unit="", words="number of wave components"
-    )
-    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the realisation")
-    gamma: float = param(
-        3.3, low=1.0, high=7.0, unit="", words="peak enhancement of the spectrum jonswap"
-    )
-    spreading: float = param(
-        0.0,
-        low=0.0,
-        high=200.0,
-        unit="",
-        words="exponent n of the directions, cos^n; 2 to 4 for a wind sea; 0: all waves run alike",
-    )
-    depth: float = param(
-        0.0, low=0.0, high=11000.0, unit="m", words="depth of the water; 0: deep water"
-    )
-    random_amplitudes: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: the amplitudes are random too, not only phases"
     )
     sway: float = param(
         1.0, low=0.0, high=10.0, unit="", words="factor on the sway force; 1: as the formula"
@@ -294,30 +246,6 @@ class IrregularSea(Force):
         follows="linear_hull.arm?",
     )
 
-    spectrum_code: float = name_code_parameter("code of the spectrum")
-
-    def __post_init__(self) -> None:
-        """Check the spectrum, and that the waves up to the cut have nearly all of its energy.
-
-        Raises:
-            BadInput: There is no such spectrum, or more than 2 % of the energy lies above the cut.
-        """
-        super().__post_init__()
-        code = index_code(f"{self.name}: spectrum", self.spectrum, SPECTRA)
-        object.__setattr__(self, "spectrum_code", code)
-        calm = self.significant_height == 0.0
-        if calm or self.cut == 0.0 or self.spectrum == "regular":
-            return
-        frequency, above = energy_above(self.values())
-        lost = float(np.interp(self.cut, frequency, above))
-        if lost > MOST_LOST:
-            lowest = float(np.interp(-MOST_LOST, -above, frequency))
-            raise BadInput(
-                f"{self.name}.cut = {self.cut:g} rad/s omits {100.0 * lost:.0f} % of the energy of "
-                f"waves of {self.modal_period:g} s; allowed is at least {lowest:.3g} rad/s, "
-                "or 0 for the default"
-            )
-
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the default depths of the sway force and of the roll moment.
 
@@ -349,20 +277,8 @@ class IrregularSea(Force):
         With `course_kept` = 1 it is the elevation that the ship meets on her initial course, the
         same at all places.
         """
-        if self.significant_height == 0.0:
-            return None
-        q = self.values()
-        frequency, amplitude, phase, direction = components(q).T
-        number = interpreted(wave_number)(frequency, self.depth)
-        if self.course_kept:
-            frequency = frequency - number * np.cos(direction) * self.speed
-            number = 0.0 * number
-        return WaveField(amplitude, frequency, number, direction, phase + pi)
-
-    def with_seed(self, seed: int) -> Self:
-        """Return a copy of the irregular sea whose random waves follow from the seed.
-
-        Args:
-            seed: Seed of the scenario.
-        """
-        return replace(self, realisation=seeded_realisation(self.realisation, seed))
+        field = super().wave_field()
+        if field is None or not self.course_kept:
+            return field
+        frequency = field.frequency - field.wave_number * np.cos(field.direction) * self.speed
+        return replace(field, frequency=frequency, wave_number=0.0 * field.wave_number)

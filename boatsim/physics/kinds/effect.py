@@ -371,6 +371,7 @@ class RigidBody(Protocol):
     mass: float  # [kg]
     roll_inertia: float  # [kg m^2]
     yaw_inertia: float  # [kg m^2]
+    centre: tuple[float, float]  # [m] mass centre ahead of the origin of motion and below it
 
 
 class Boat(Protocol):

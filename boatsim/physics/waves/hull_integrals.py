@@ -31,15 +31,28 @@ def wave_slope_integrals(s: float, taper: float) -> tuple[float, float]:
 
 
 @njit(inline="always")
-def beam_attenuation(s: float) -> float:
-    """Return the roll moment of a wave on a section over that of a plane with the wave's slope.
+def beam_integrals(s: float) -> tuple[float, float]:
+    """Return force and roll moment of a wave on a section over those of waves that are long.
 
-    It is 3 (sin s - s cos s) / s^3: the integral of y sin(2 s y / b) over the breadth b, divided by
-    that of y (2 s y / b).
+    They are the mean of cos(2 s y / b) over the breadth b, sin s / s, and 3 (sin s - s cos s) /
+    s^3: the integral of y sin(2 s y / b) divided by that of y (2 s y / b).
 
     Args:
         s: Wave number across the hull times half the breadth [-].
     """
-    if abs(s) < 0.05:  # series, because the closed form cancels numerically
-        return 1.0 - s * s / 10.0 + s**4 / 280.0
-    return 3.0 * (sin(s) - s * cos(s)) / s**3
+    if abs(s) < 0.05:  # series, because the closed forms cancel numerically
+        square = s * s
+        return 1.0 - square / 6.0 + square * square / 120.0, 1.0 - s * s / 10.0 + s**4 / 280.0
+    n = sin(s)
+    return n / s, 3.0 * (n - s * cos(s)) / s**3
+
+
+@njit(inline="always")
+def beam_attenuation(s: float) -> float:
+    """Return the roll moment of a wave on a section over that of a plane with the wave's slope.
+
+    Args:
+        s: Wave number across the hull times half the breadth [-].
+    """
+    _, moment = beam_integrals(s)
+    return moment
