@@ -2002,8 +2002,7 @@ class DecideConfig:
         "Weight: share of the unexplained evidence, or of that of its significant dependence on "
         "motion, commands, place or time, in the sum of it and of the evidence of the effect. It "
         "counts beyond `law_error`, and not if the vessel file calls any of its numbers estimated, "
-        "because such a model leaves force of its own. Of effects that explain less than what "
-        "remains half are stand-ins.",
+        "because such a model leaves force unexplained whether or not the effect is true.",
         low=-inf,
     )
     structure: float = setting(

@@ -26,6 +26,9 @@ from boatsim.diagnosis.open_set.stochastic_size import VarianceScore
 from boatsim.diagnosis.problem import FilterPasses, Fit, Problem, prior_arrays
 from boatsim.physics.base import Array, Effect, RandomForce
 
+# From the group of each row to the size of an effect on each group (K,), and its covariance (K, K)
+SizeOnParts = Callable[[NDArray[np.int_]], tuple[Array, Array]]
+
 
 @dataclass(frozen=True)
 class Factor:
@@ -150,13 +153,13 @@ def effect_consistency(
         worst, quantity = Variation(0.0, 0.0, 0), ""
         for words, groups in ranges:
             if words in rates and isinstance(problem.candidates[name], RandomForce):
-                continue  # estimated with the rows themselves, the motion tells their forces
+                continue  # the estimated motion of a row depends on its own random force
             variation = _variation(*part(groups), config)
             if variation.ratio > worst.ratio or not quantity:
                 worst, quantity = variation, words
         unseen_factor, unseen_gain = Factor(0.0, config.unknown_factor_sd), 0.0
         if unseen is not None:
-            unseen_factor = _held_out_size(problem, unseen_problem, best, fitted, unseen, name)
+            unseen_factor = _held_out_size(unseen_problem, best, fitted, unseen, name, part)
             unseen_gain = _gain(unseen_problem, best, without)
         axes = effect_axes(problem, best, name)
         found[name] = Consistency(
@@ -175,9 +178,7 @@ def effect_consistency(
     return found
 
 
-def _size_on_parts(
-    problem: Problem, best: Fit, fitted: _Linearised, name: str
-) -> Callable[[NDArray[np.int_]], tuple[Array, Array]]:
+def _size_on_parts(problem: Problem, best: Fit, fitted: _Linearised, name: str) -> SizeOnParts:
     """Return a function from groups of rows to the size of an effect on each, with covariance."""
     config = problem.config.decide
     effect = problem.candidates[name]
@@ -297,28 +298,26 @@ def _variation(factors: Array, covariance: Array, config: DecideConfig) -> Varia
 
 
 def _held_out_size(
-    problem: Problem,
     unseen_problem: Problem,
     best: Fit,
     fitted: _Linearised,
     unseen: _Linearised,
     name: str,
+    part: SizeOnParts,
 ) -> Factor:
     """Return the size of an effect on held-out recordings, given the fit to the others."""
-    config = problem.config.decide
-    effect = problem.candidates[name]
+    config = unseen_problem.config.decide
+    effect = unseen_problem.candidates[name]
     if not isinstance(effect, RandomForce):
         change = _change_by_factor(best, effect)
         return _held_out_factor(best, fitted, unseen, name, change, config)
     if not np.isfinite(unseen.whitened).all():
         return Factor(0.0, config.unknown_factor_sd)
-    sd = config.prior_factor_sd
-    variance = 0.0
-    for one, passes in ((problem, fitted), (unseen_problem, unseen)):
-        everything = np.zeros(len(passes.whitened), dtype=int)
-        size, covariance = VarianceScore.of_effect(one, best, name).sizes(everything, sd)
-        variance += float(covariance[0, 0])
-    return Factor(float(size[0]), float(np.sqrt(variance)))
+    _, of_fit = part(np.zeros(len(fitted.whitened), dtype=int))
+    score = VarianceScore.of_effect(unseen_problem, best, name)
+    everything = np.zeros(len(unseen.whitened), dtype=int)
+    size, own = score.sizes(everything, config.prior_factor_sd)
+    return Factor(float(size[0]), float(np.sqrt(of_fit[0, 0] + own[0, 0])))
 
 
 def _held_out_factor(

@@ -49,7 +49,7 @@ def logistic_features(
     structure = log_signs.structure_gain / max(log_signs.effects_gain, least)
     remains = max(log_signs.unexplained_gain, log_signs.structured * log_signs.structure_gain)
     remains = max(remains - config.law_error * max(log_signs.effects_gain, 0.0), 0.0)
-    # An estimated model leaves force of its own, which tells nothing about the effect
+    # A model with estimated numbers leaves force unexplained whether or not the effect is true
     remainder = 0.0 if log_signs.estimated else remains / (remains + max(effect.gain, least))
     held_out_gain = log(max(consistency.held_out_gain, config.least_held_out_gain))
     shift, most_shift = log_signs.coefficient_shift, config.largest_coefficient_shift
