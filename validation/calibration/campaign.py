@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from rich.progress import Progress
 
+from boatsim.diagnosis.config import DEFAULT
 from validation.calibration.unknown_causes import UNKNOWN
 from validation.calibration.vessels import BOATS, PLANS
 from validation.practice.cause import Maker, Rng
@@ -133,9 +134,28 @@ def record_file(out: Path, job: Job) -> Path:
 
 
 def records(out: Path) -> Iterator[Record]:
-    """Yield the recorded diagnoses of a folder in order of their names."""
+    """Yield the recorded diagnoses of a folder in order of their names.
+
+    The limit of a probability that names an effect beside an unknown cause is the one in use, so
+    that it may be changed without a new campaign.
+    """
     for file in sorted(out.glob("[SU]*_T*.json")):
-        yield from json.loads(file.read_text())
+        yield from map(with_limit_in_use, json.loads(file.read_text()))
+
+
+def with_limit_in_use(record: Record) -> Record:
+    """Return a record whose names beside an unknown cause are as probable as they must be now."""
+    signs = record["signs"]
+    if not record["unknown"]["flag"] or signs["log"].get("estimated"):
+        return record
+    probable = set()
+    for one in signs["effects"]:
+        if one["probability"] >= DEFAULT.decide.least_probability_beside_unknown:
+            probable.add(one["name"])
+    named, possible = [], [*record["also_possible"]]
+    for effect in record["effects"]:
+        (named if effect["name"] in probable else possible).append(effect)
+    return {**record, "effects": named, "also_possible": possible}
 
 
 def record(out: Path, job: Job) -> None:

@@ -89,6 +89,8 @@ def reason_for_doubt(judged: Judgement, log: LogSigns, config: DecideConfig) -> 
         return "much of the missing force remains even with this effect in the model"
     if exceeds_range(signs, config):
         return "its fitted size is at the end of the range of plausible values"
+    if judged.probability >= config.least_probability:
+        return "an unknown cause remains, and beside one such an effect is often a stand-in"
     return "several weak signs together make it more likely that it stands in for another cause"
 
 

@@ -262,20 +262,20 @@ def count_in_words(count: int, noun: str) -> str:
 
 
 def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
-    """Return statements on the formulas: those that generalize first, further events as a count."""
-    general, events = [], []
+    """Return statements on the formulas: those that generalize first, the others as a count."""
+    general, others = [], []
     for law in answer["described"]:
         if law["carries_over"]:
             general.append(f"the model lacks {law['statement']}")
         else:
-            events.append(law["statement"])
+            others.append(law["statement"])
     if not (general or effects_precede):
-        return [f"the model lacks {event}" for event in events[:MOST_NUMBERS]]
+        return [f"the model lacks {other}" for other in others[:MOST_NUMBERS]]
     statements = general[:MOST_NUMBERS]
-    if len(events) == 1:
-        statements.append(f"one event of a single run remains: {events[0]}")
-    elif events:
-        statements.append(f"{len(events)} events of single runs remain, the first is {events[0]}")
+    if len(others) == 1:
+        statements.append(f"one further force remains: {others[0]}")
+    elif others:
+        statements.append(f"{len(others)} further forces remain, the first is {others[0]}")
     if statements and effects_precede:
         statements[0] = f"in addition, {statements[0]}"
     return statements

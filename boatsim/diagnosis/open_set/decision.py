@@ -78,8 +78,10 @@ def decide(
     An effect that is probably a stand-in for another cause, or that held-out recordings do not
     confirm, is not stated as a cause. It stays in the patched vessel, because it describes the
     data, and if it explains much the cause is reported as unknown. So it is if held-out recordings
-    require a force that no identified effect gives. An effect that only refines an estimated number
-    of the vessel file is not a cause, so that held-out recordings alone decide about it.
+    require a force that no identified effect gives. Beside an unknown cause an effect must be more
+    probable to be named, because it is more often a stand-in. An effect that only refines an
+    estimated number of the vessel file is not a cause, so that held-out recordings alone decide
+    about it.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -95,30 +97,39 @@ def decide(
     for one in ranking.named:
         own, errors = signs[one.name], alone[one.name]
         judgements.append(_judge(problem, ranking.best, one, own, of_log, errors))
+    unseen = of_log.held_out_unexplained > config.decide.held_out_share
+    ranking = replace(ranking, held_out_remains=unseen and of_log.held_out_structured)
+    least = config.decide.least_probability
+    decided = _stated(problem, ranking, judgements, candidates, least)
+    if decided.has_unexplained_force_or_cause and not of_log.estimated:
+        least = max(least, config.decide.least_probability_beside_unknown)
+        decided = _stated(problem, ranking, judgements, candidates, least)
+    return Decision(problem, decided, tuple(judgements), of_log)
+
+
+def _stated(
+    problem: Problem,
+    ranking: Ranking,
+    judgements: Sequence[Judgement],
+    candidates: int,
+    least_probability: float,
+) -> Ranking:
+    """Divide the effects into named and possible ones, and mark unnamed ones that explain much."""
     named, doubtful = list[IdentifiedEffect](), list[IdentifiedEffect]()
     stands_in = False
     for judged in judgements:
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
-        probable = judged.probability >= config.decide.least_probability
+        probable = judged.probability >= least_probability
         if (probable or judged.refines) and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)
         others = ranking.explained - stated.gain
-        least = required_gain(candidates, config.select) + unknown_cause_threshold(
-            config.select, others
-        )
+        config = problem.config.select
+        least = required_gain(candidates, config) + unknown_cause_threshold(config, others)
         stands_in = stands_in or bool(stated.shared > least)
-    unseen = of_log.held_out_unexplained > config.decide.held_out_share
-    decided = replace(
-        ranking,
-        named=tuple(named),
-        doubtful=tuple(doubtful),
-        stands_in=stands_in,
-        held_out_remains=unseen and of_log.held_out_structured,
-    )
-    return Decision(problem, decided, tuple(judgements), of_log)
+    return replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
 
 
 def decision_without_fit(problem: Problem, ranking: Ranking) -> Decision:

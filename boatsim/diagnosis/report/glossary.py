@@ -97,6 +97,7 @@ def _evidence(f: Findings) -> Entry:
 
 def _probability(f: Findings) -> Entry:
     named = f.setting("decide.least_probability")
+    beside = f.setting("decide.least_probability_beside_unknown")
     return (
         "probability that it is a true cause",
         "The probability that an identified effect is a true cause, and neither one of its "
@@ -105,7 +106,8 @@ def _probability(f: Findings) -> Entry:
         "and command and in the held-out recordings, and from the force that remains. Of many "
         "simulated logs whose causes are known, this share of such names was right. An "
         f"effect below {100 * named:.0f} %, together with its look-alikes, is only called "
-        "possible.",
+        f"possible; beside an unknown cause, below {100 * beside:.0f} %, unless the vessel file "
+        "calls numbers estimated.",
     )
 
 

@@ -83,7 +83,10 @@ class CandidateSets:
         self.predictions: dict[tuple[int, int], tuple[Fit, Recordings, float]] = {}
         self.random = set[str]()  # stochastic forces, and drifts of instruments
         self.unsteady = set[str]()  # stochastic forces
+        self.measurement = set[str]()  # errors of the measurement
         for name, effect in problem.candidates.items():
+            if type(effect).kind == "measurement":
+                self.measurement.add(name)
             if type(effect).random:
                 self.random.add(name)
             if isinstance(effect, RandomForce):
@@ -109,11 +112,32 @@ class CandidateSets:
         Args:
             best: Fit of the vessel model with some candidate effects.
         """
-        laws = best
+        return self._evidence_without(best, self.random)
+
+    def slight_gain(self, best: Fit, own: float = 0.0, measurement: bool = False) -> float:
+        """Return the gain below which an effect may only correct the laws of the others [nats].
+
+        It is a share of the evidence that the other effects explain. Errors of the measurement do
+        not count for an effect of physics: a force cannot correct them.
+
+        Args:
+            best: Fit of the vessel model with some candidate effects.
+            own: Evidence that the effect itself gains in this fit [nats].
+            measurement: Whether the effect is an error of the measurement.
+        """
+        share = self.config.select.slight_share
+        least = share * (self.explained_evidence(best) - own)
+        if measurement or least <= self.required_gain or not self.measurement & set(best.effects):
+            return least  # mostly, without further fits
+        physics = self._evidence_without(best, self.random | self.measurement)
+        return share * max(physics - own, 0.0)
+
+    def _evidence_without(self, best: Fit, left_out: set[str]) -> float:
+        """Evidence that a fit gains over the vessel alone when some effects are left out."""
         for name in best.effects:
-            if name in self.random:
-                laws = self.fit_without(laws, name)
-        return float(laws.evidence - self.base.evidence)
+            if name in left_out:
+                best = self.fit_without(best, name)
+        return float(best.evidence - self.base.evidence)
 
     def converged_fit(self, start: Fit) -> Fit:
         """Return the converged fit of a candidate set, from the cache or by fitting it.

@@ -49,8 +49,8 @@ def select_forward(sets: CandidateSets, best: Fit, among: Sequence[str] = ()) ->
         share = config.deterministic_share * _combined_gain(tested, best)
         if _combined_gain(laws, best) > max(sets.required_gain, share):
             tested = laws  # a stochastic force can replace a law, a law hardly replaces it
-        slight = config.slight_share * sets.explained_evidence(best)
-        if _combined_gain(tested, best) < max(sets.required_gain, slight):
+        tested = _with_enough_gain(sets, best, tested)
+        if not tested:
             further = None if among else add_further_effects(sets, best)
             if further is None:
                 break
@@ -67,6 +67,16 @@ def select_forward(sets: CandidateSets, best: Fit, among: Sequence[str] = ()) ->
             break  # the newest one was removed again
         best = further
     return best
+
+
+def _with_enough_gain(sets: CandidateSets, best: Fit, tested: Mapping[str, Fit]) -> dict[str, Fit]:
+    """Candidates that gain enough together, or those of physics that do; none if neither does."""
+    physics = {name: fit for name, fit in tested.items() if name not in sets.measurement}
+    for measurement, fits in ((True, tested), (False, physics)):
+        least = max(sets.required_gain, sets.slight_gain(best, measurement=measurement))
+        if _combined_gain(fits, best) >= least:
+            return dict(fits)
+    return {}
 
 
 def _not_added(name: str, best: Fit, gain: float) -> str:

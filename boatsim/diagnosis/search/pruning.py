@@ -138,7 +138,7 @@ def _required_lead(sets: CandidateSets, one: IdentifiedEffect, rival: str) -> fl
 def _too_weak(sets: CandidateSets, best: Fit, named: IdentifiedEffect) -> bool:
     """Whether an effect gains too little."""
     config = sets.config.select
-    slight = config.slight_share * (sets.explained_evidence(best) - named.gain)
+    slight = sets.slight_gain(best, named.gain, named.name in sets.measurement)
     if named.gain < max(config.least_gain, slight) or named.shared < sets.required_gain:
         return True
     return not differs_from_zero(sets, best, named.name)

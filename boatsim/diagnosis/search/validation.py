@@ -76,8 +76,8 @@ def refuted_effect(
     unlikely = doubtful - sets.supported
     little = set()
     for one in named:
-        others = max(sets.explained_evidence(best) - one.gain, 0.0)
-        least = sets.required_gain + sets.config.select.slight_share * others
+        slight = sets.slight_gain(best, one.gain, one.name in sets.measurement)
+        least = sets.required_gain + max(slight, 0.0)
         if one.shared + gains[one.name] < least:
             little.add(one.name)
     doubtful = unlikely | (little - sets.supported)

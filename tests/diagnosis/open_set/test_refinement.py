@@ -7,7 +7,7 @@ import pytest
 from pushed_boat import BOAT, Missing, sail
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.open_set.decision import Decision, decide
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
@@ -32,13 +32,18 @@ def towed(t: float, y: Array, command: Array) -> Array:
     return np.array([0.5, 0.3, 0.0])
 
 
-def decided(missing: Missing, vessel: Vessel) -> Decision:
+def quadratic_and_hunting(t: float, y: Array, command: Array) -> Array:
+    """The same, and a push along the hull that no candidate describes."""
+    return quadratic(t, y, command) + np.array([0.8 * np.sin(1.1 * t), 0.0, 0.0])
+
+
+def decided(missing: Missing, vessel: Vessel, config: DiagnosisConfig = NEVER) -> Decision:
     """The decision if no probability suffices for a cause, on two logs and a held-out one."""
     program = Program(vessel, candidate_library(vessel).compiled_effects)
     logs = [sail(name, seed, missing)[0] for seed, name in enumerate("abc")]
     mapped = [map_recording(log, program) for log in logs]
     levels, uncertain = prior_noise_levels(vessel, logs), {"damping": 0.05, "thrust": 0.05}
-    problem = Problem(mapped[:2], levels, uncertain, config=NEVER)
+    problem = Problem(mapped[:2], levels, uncertain, config=config)
     ranking = select_and_rank_candidates(problem, CANDIDATES, mapped[2:])
     return decide(problem, ranking, mapped[2:], len(CANDIDATES))
 
@@ -59,6 +64,25 @@ def test_an_effect_that_refines_an_estimate_needs_no_probability(
     assert (named, doubtful) == (
         (["quadratic_damping"], []) if refines else ([], ["quadratic_damping"])
     )
+
+
+@pytest.mark.parametrize(
+    ("missing", "vessel", "is_named"),
+    [
+        pytest.param(quadratic, EXACT, True, id="alone"),
+        pytest.param(quadratic_and_hunting, EXACT, False, id="beside an unknown cause"),
+        pytest.param(quadratic_and_hunting, ROUGH, True, id="estimated numbers"),
+    ],
+)
+def test_beside_an_unknown_cause_a_name_must_be_more_probable(
+    missing: Missing, vessel: Vessel, is_named: bool
+) -> None:
+    limits = replace(DEFAULT.decide, least_probability=0.0, least_probability_beside_unknown=1.0)
+    found = decided(missing, vessel, replace(DEFAULT, decide=limits))
+    named = "quadratic_damping" in [one.name for one in found.ranking.named]
+    assert "quadratic_damping" in [one.effect.name for one in found.judgements]
+    assert found.ranking.has_unexplained_force_or_cause == (missing is not quadratic)
+    assert named == is_named
 
 
 def test_no_force_of_the_surroundings_is_implausibly_strong() -> None:

@@ -646,13 +646,13 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
             [LATE],
             [EVENT],
             "No missing physics was found, but the recordings contain a measurement error: "
-            f"{CLOCK}. In addition, one event of a single run remains: a push at 3 s of run_1.",
+            f"{CLOCK}. In addition, one further force remains: a push at 3 s of run_1.",
         ),
         (
             [DAMPED],
             [EVENT, LAW, EVENT],
             "The model leaves out one effect: damping grows. In addition, the model lacks a side force of 2 N. "
-            "2 events of single runs remain, the first is a push at 3 s of run_1.",
+            "2 further forces remain, the first is a push at 3 s of run_1.",
         ),
     ],
 )

@@ -185,3 +185,20 @@ def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: La
     assert not one.tied_with
     (all_told,) = remove_refuted_rivals(sets_of(problem, base, wrong), wrong, [one], held_out)
     assert all_told.tied_with == ("steady_force",)
+
+
+def test_a_force_is_compared_with_forces_and_an_error_of_the_measurement_with_all(
+    weak: Laid,
+) -> None:
+    problem, base, found, _ = weak
+    both = replace(
+        found, effects=("weak_reverse", "heading_offset"), evidence=base.evidence + 1000.0
+    )
+    force = replace(found, evidence=base.evidence + 600.0)
+    sets = CandidateSets(problem, ("weak_reverse", "heading_offset", "steady_force"), base)
+    sets.fits |= {frozenset(f.effects): f for f in (both, force)}
+    share = problem.config.select.slight_share
+    assert sets.slight_gain(both) == pytest.approx(share * 600.0)
+    assert sets.slight_gain(both, measurement=True) == pytest.approx(share * 1000.0)
+    assert sets.slight_gain(both, own=600.0) == 0.0  # nothing but the sensor besides it
+    assert sets.slight_gain(force) == pytest.approx(share * 600.0)
