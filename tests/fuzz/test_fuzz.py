@@ -9,7 +9,7 @@ from tests.fuzz import seeds
 from tests.fuzz.drive import drive
 from tests.fuzz.readers import READERS
 
-COUNT = 25
+COUNT = 40
 TOLERANT = ("mesh.obj", "mesh.stl")  # MuJoCo reads most numbers as a mesh
 
 
