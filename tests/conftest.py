@@ -13,6 +13,21 @@ from boatsim.physics.trust import trust_folders
 settings.register_profile("boatsim", deadline=None, print_blob=True)
 settings.load_profile("boatsim")
 
+# Beginnings of the names of the longest tests, of 7 to 60 s of CPU time. They start first: one that
+# started last would keep a single processor busy while the others have no tests left.
+LONGEST = (
+    "test_the_examples_of_all_effects_print_what_their_pages_show",
+    "test_a_tutorial_prints_what_it_shows_in_an_empty_home",
+    "test_with_the_wind_known_nothing_is_missing",
+    "test_a_mirrored_log_is_the_first_thing_that_a_diagnosis_says",
+    "test_a_notebook_runs_from_its_first_to_its_last_cell",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the longest tests first, the others in the order of their files."""
+    items.sort(key=lambda item: not item.name.startswith(LONGEST))
+
 
 @pytest.fixture
 def trusted(tmp_path: Path) -> Iterator[None]:

@@ -13,6 +13,7 @@ import results_charts as results_charts  # noqa: E402
 from page_commands import MARK as MARK  # noqa: E402
 from page_commands import ROOT as ROOT  # noqa: E402
 from page_commands import blocks as blocks  # noqa: E402
+from page_commands import environment_of_new_user as environment_of_new_user  # noqa: E402
 from page_commands import failures as failures  # noqa: E402
 from page_commands import figures as figures  # noqa: E402
 from page_commands import figures_agree as figures_agree  # noqa: E402

@@ -40,7 +40,7 @@ STARTS = {
     "kvlcc2": {"u": 1.18},
     "mariner": {"u": 7.7},
 }  # [m/s], of a vessel whose model holds near its approach speed only
-DURATION = 10.0  # [s] of an example whose case states none
+DURATION = 6.0  # [s] of an example whose case states none
 # Errors of a recorded channel that an example applies, by the parameter that differs from zero.
 ERRORS = {"gain_fraction": 0.1, "offset": 0.02, "delay": 0.3, "drift": 0.002}
 

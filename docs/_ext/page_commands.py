@@ -117,12 +117,13 @@ def _index_of(line: str, printed: Sequence[str], start: int) -> int | None:
     return None
 
 
-def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
+def failures(page: str, home: Path, programs: Path | None = None) -> Iterator[tuple[int, str]]:
     """Run all commands of a page and yield what differs from the page.
 
     Args:
         page: Text of the page.
         home: Empty folder used as the home folder; `~/boatsim` in it is a link to the repository.
+        programs: Folder whose programs are used in place of others of the same name.
 
     Yields:
         Line number and description of each difference; the run stops after a wrong exit code.
@@ -133,12 +134,15 @@ def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
     (home / "boatsim").symlink_to(ROOT)
     working_folder = str(home)
     folder_file = home / ".working_folder"
+    environment = environment_of_new_user(home)
+    if programs is not None:
+        environment["PATH"] = f"{programs}{os.pathsep}{environment['PATH']}"
     for block in blocks(page):
         script = f'cd "{working_folder}"\n{block.commands}\npwd > {folder_file}\n'
         begin = time.monotonic()
         result = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", script],
-            env=_environment(home),
+            env=environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -165,7 +169,7 @@ def _warn_if_slow(block: Block, seconds: float) -> None:
         )
 
 
-def _environment(home: Path) -> dict[str, str]:
+def environment_of_new_user(home: Path) -> dict[str, str]:
     """Return the environment of a new user who shares the builder's cache of compiled programs."""
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     compiled = os.environ.get("BOATSIM_CACHE", str(caches / "boatsim"))

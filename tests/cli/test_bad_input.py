@@ -487,6 +487,7 @@ def test_a_command_beyond_its_limits_is_refused_with_row_and_column(
 @given(content=tomls(NOTES))
 @example(content=NOTES.replace("force_rms = [0.2]", "force_rms = [0.0]").encode())
 @example(content=NOTES.replace("roll_sd_rad = 1e-4", "roll_sd_rad = 0.0").encode())
+@pytest.mark.slow
 def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(
     content: bytes, place: Callable[..., Path]
 ) -> None:

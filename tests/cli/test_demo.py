@@ -36,6 +36,7 @@ def picture(demo: tuple[Path, str]) -> str:
     return animated_picture(demo[0])
 
 
+@pytest.mark.slow
 def test_the_hidden_fault_is_found_within_two_standard_deviations(demo: tuple[Path, str]) -> None:
     answer = json.loads((demo[0] / "diagnosis.json").read_text())
     effect = scenarios.load("joystick_boat/sway_1_as_published").vessel.effect("weak_reverse")

@@ -441,6 +441,7 @@ def test_20_s_of_example_b(dt: float) -> None:
     assert found.estimate < 10.0
 
 
+@pytest.mark.slow
 def test_20_s_of_example_b_with_a_tenth_of_the_gain() -> None:
     found = figures_b(1e4, 20.0, 1e-5)
     assert found.prediction == pytest.approx(

@@ -98,6 +98,7 @@ def test_delay_says_when_the_next_command_arrives() -> None:
     assert CommandDelay.time_to_discontinuity(0.7, memory, 0, values) == 0.12
 
 
+@pytest.mark.slow
 def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     """The Otter's propellers at 50 rad/s ahead and astern: prop walk goes by k n |n|, as at
     thrusters."""

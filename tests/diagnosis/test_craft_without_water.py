@@ -170,6 +170,7 @@ def test_what_differs_from_the_data_sheet_is_found_with_its_size(case: str):
         assert sd < 0.2 * abs(true)
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_the_data_sheet_is_right():
     assert ranked(floated(3), floated(4)).named == ()
 

@@ -60,6 +60,7 @@ def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> No
     assert (broyden_update(J, np.zeros(7), np.zeros(3)) == J).all()
 
 
+@pytest.mark.slow
 def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> (
     None
 ):

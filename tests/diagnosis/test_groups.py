@@ -67,6 +67,7 @@ def test_names_of_groups_are_taken_apart_as_they_were_put_together():
     assert (without_group("wind"), group_of("wind")) == ("wind", "")
 
 
+@pytest.mark.slow
 def test_a_weaker_thrust_is_found_in_the_group_that_has_it_with_its_size():
     problem, ranking = ranked(sailed(weaker))
     assert [one.name for one in ranking.named] == ["thrust_gain_error@yellow"]
@@ -79,6 +80,7 @@ def test_a_weaker_thrust_is_found_in_the_group_that_has_it_with_its_size():
         assert values[gain] == pytest.approx(WEAK if "yellow" in mapped.groups else 1.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_force_that_acts_on_one_day_is_found_on_that_day():
     _, ranking = ranked(sailed(pushed_aside))
     assert [one.name for one in ranking.named] == ["steady_force@yellow"]

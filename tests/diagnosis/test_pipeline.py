@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import slow
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import multivariate_normal
@@ -158,6 +159,7 @@ def driven(boat: vessel.Vessel) -> Recording:
     )
 
 
+@pytest.mark.slow
 def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely_splits_it(
     joystick,
 ):
@@ -339,7 +341,7 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
         assert np.abs(a - b).max() < 1e-6
 
 
-@pytest.mark.parametrize("name", ["T002", "T003", "T019"])
+@pytest.mark.parametrize("name", [slow("T002"), "T003", slow("T019")])
 def test_practice_trials_are_named_exactly(name):
     trial = DATA / "trials" / name
     truth_is = json.loads((trial / "answer.json").read_text())

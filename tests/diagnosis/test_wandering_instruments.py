@@ -52,6 +52,7 @@ def likelihood(x: Array, every: float, rms: float) -> float:
     return float(laid.log_likelihood(values, program.effect_switches(["position_wander"]), levels))
 
 
+@pytest.mark.slow
 def test_likelihood_is_that_of_the_normal_distribution_written_out() -> None:
     """Fixes of a boat at rest: noise of each and an error that decays as exp(-t/T); where it lies
     is unknown."""

@@ -23,7 +23,17 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from tests.pages import MARK, ROOT, blocks, failures, figures, figures_agree, first_difference
+from tests.fork_server import forked_commands
+from tests.pages import (
+    MARK,
+    ROOT,
+    blocks,
+    environment_of_new_user,
+    failures,
+    figures,
+    figures_agree,
+    first_difference,
+)
 from validation import trials
 from validation.practice import __main__ as practice
 from validation.real import common
@@ -101,7 +111,8 @@ def test_the_commands_of_the_front_page_are_looked_at() -> None:
 
 @pytest.mark.parametrize("name", TUTORIALS)
 def test_a_tutorial_prints_what_it_shows_in_an_empty_home(name: str, tmp_path: Path) -> None:
-    assert not list(failures(PAGES[name], tmp_path))
+    with forked_commands(environment_of_new_user(tmp_path)) as programs:
+        assert not list(failures(PAGES[name], tmp_path, programs))
 
 
 def test_tutorials_go_from_a_log_to_a_diagnosis() -> None:

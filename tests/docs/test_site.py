@@ -125,6 +125,7 @@ def test_every_key_of_a_file_is_on_the_page_of_formats() -> None:
     assert keys - told - by_the_program == set()
 
 
+@pytest.mark.slow
 def test_what_the_page_on_adding_shows_is_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -390,6 +390,7 @@ def test_what_was_driven_is_recorded_as_any_run(driven: Path) -> None:
     assert "surge_error_rms" in json.loads((driven / "norms.json").read_text())["norms"]
 
 
+@pytest.mark.slow
 def test_what_was_driven_runs_again_from_its_file_to_the_last_bit(
     driven: Path, tmp_path: Path
 ) -> None:

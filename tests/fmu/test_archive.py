@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from alike import few
 from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
@@ -48,8 +49,7 @@ def strange_vessel() -> Vessel:
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", shipped_content_names("vessel"))
+@pytest.mark.parametrize("name", few(shipped_content_names("vessel"), 0, 6))
 def test_the_description_of_each_vessel_is_valid(name: str, tmp_path: Path) -> None:
     validation = pytest.importorskip("fmpy.validation")
     program = Program(with_surroundings(load_vessel(name)))

@@ -78,7 +78,7 @@ def sails_as_in_still_water(boat: Vessel) -> None:
     )
 
 
-@pytest.mark.parametrize(("name", "loads"), few(CASES))
+@pytest.mark.parametrize(("name", "loads"), few(CASES, 3, 10))
 def test_a_vessel_in_a_uniform_current_sails_as_in_still_water(name: str, loads: list[str]) -> None:
     sails_as_in_still_water(in_flow(name, loads))
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import few, slow
+from runs import found
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -217,12 +219,12 @@ MEASURED = {  # scenario -> published numbers its norms are held against
 }
 
 
-@pytest.mark.parametrize("name", MEASURED)
+@pytest.mark.parametrize("name", few(MEASURED, 1))
 def test_kvlcc2_mmg_gives_the_published_manoeuvres(name: str) -> None:
     made = run(scenario.load(f"kvlcc2_mmg/{name}"))
-    found = requested_metrics(made)
-    assert {n for n, norm in found.items() if norm.published is not None} == MEASURED[name]
-    assert all(norm.ok for norm in found.values() if norm.ok is not None), found
+    metrics = requested_metrics(made)
+    assert {n for n, metric in metrics.items() if metric.published is not None} == MEASURED[name]
+    assert all(metric.ok for metric in metrics.values() if metric.ok is not None), metrics
     if name == "turning_circle_35":
         last = [made.recording[n][-1] for n in ("u_mps", "v_mps", "r_radps")]
         assert last == pytest.approx([0.427100, -0.146748, 0.055538], rel=1e-4)
@@ -329,15 +331,17 @@ def overshoots(helm: float) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("helm", [10, 20])
+@pytest.mark.parametrize("helm", [10, slow(20)])
 def test_mariner_swings_in_a_zigzag_as_by_an_independent_integrator(helm: int) -> None:
-    found = requested_metrics(run(scenario.load(f"mariner/zigzag_{helm}")))
-    ours = [found[f"{which}_overshoot"].value for which in ("first", "second", "third")]
+    metrics = found(f"mariner/zigzag_{helm}")[0]
+    ours = [metrics[f"{which}_overshoot"].value for which in ("first", "second", "third")]
     assert ours == pytest.approx(overshoots(helm), abs=1e-3)
 
 
-@pytest.mark.parametrize("name", ["turning_circle_35", "zigzag_10", "zigzag_20", "pull_out_20"])
+@pytest.mark.parametrize(
+    "name", ["zigzag_10", slow("zigzag_20"), slow("turning_circle_35"), slow("pull_out_20")]
+)
 def test_mariner_does_as_the_toolbox(name: str) -> None:
-    found = requested_metrics(run(scenario.load(f"mariner/{name}")))
-    assert sum(norm.ok is True for norm in found.values()) >= 4
-    assert all(norm.ok is not False for norm in found.values()), found
+    metrics = found(f"mariner/{name}")[0]
+    assert sum(metric.ok is True for metric in metrics.values()) >= 4
+    assert all(metric.ok is not False for metric in metrics.values()), metrics

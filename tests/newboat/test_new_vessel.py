@@ -10,6 +10,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from alike import few
 from typer.testing import CliRunner
 
 from boatsim.cli import app
@@ -130,7 +131,7 @@ def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
 # ---- the command
 
 
-@pytest.mark.parametrize("name", BOATS)
+@pytest.mark.parametrize("name", few(BOATS, 4))
 def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_path: Path) -> None:
     folder = made(tmp_path / name, BOATS[name])
     found = vessel.load_vessel(str(folder))

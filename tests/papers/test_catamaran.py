@@ -469,7 +469,7 @@ def test_honest_positions_stay(trial: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("trials", "lever"), [([3, 5, -5, 7], 0.05), long([3, 5, -5, 7], 0.15), ([1], 0.05)]
+    ("trials", "lever"), [long([3, 5, -5, 7], 0.05), long([3, 5, -5, 7], 0.15), ([1], 0.05)]
 )
 def test_case_2_a_disturbance_off_the_mass_centre_is_named_with_its_lever(
     tmp_path: Path, trials: list[int], lever: float

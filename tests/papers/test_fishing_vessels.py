@@ -149,6 +149,7 @@ def test_added_mass_is_that_of_a_spheroid_by_lambs_integrals() -> None:
     )  # a sphere
 
 
+@pytest.mark.slow
 def test_worked_example_coefficient_by_coefficient() -> None:
     boat = example()
     d = particulars.linear_derivatives(boat.length, boat.beam, boat.draught, 1.0731, 0.513686)

@@ -294,6 +294,7 @@ def test_l1_norm_condition_of_the_cruise_control() -> None:
 NAMES = [name for name in shipped_content_names("scenario") if name.startswith("jet_ski/")]
 
 
+@pytest.mark.slow
 def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:
     found = requested_metrics(run(scenario.load("jet_ski/staircase"), 0))
     times = [float(found[f"time_95_{i}"].value or 0.0) for i in range(1, 6)]

@@ -554,7 +554,7 @@ def test_the_relay_with_roll_reduction_is_best_or_second_best_at_it(vessel: str,
     assert mean("roll_rms", vessel, test, "VSS RRS") <= rolls[1]
 
 
-@pytest.mark.parametrize(("vessel", "test"), QUARTERING)
+@pytest.mark.parametrize(("vessel", "test"), few(QUARTERING, 2))
 def test_the_relay_keeps_its_course_far_better_than_the_pid(vessel: str, test: str) -> None:
     assert mean("yaw_rms", vessel, test, "VSS") < 0.65 * mean("yaw_rms", vessel, test, "PID")
 

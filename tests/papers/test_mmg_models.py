@@ -58,6 +58,7 @@ def published() -> Run:
     return run(scenario.load("kvlcc2_mmg/zigzag_10"))
 
 
+@pytest.mark.slow
 def test_the_ship_sails_a_zigzag_as_its_model_does_in_longer_time() -> None:
     small, large = zigzag(MODEL.name, 0.05), zigzag(SHIP.name, 0.05 * TIME)
     rows = min(len(small), len(large))

@@ -155,6 +155,7 @@ def test_modulated_power_lowers_the_peak_yaw_rate_by_31_to_46_percent(
     assert 0.31 <= 1.0 - modulated / fixed <= 0.46
 
 
+@pytest.mark.slow
 def test_the_wind_needs_more_moment_than_a_weak_motor_has() -> None:
     """No angle from 0 to 45 deg makes -0.2 N m of 0.5 N in T12's boat; 1.5 N do."""
     levers = 0.28 * np.cos(np.linspace(0, pi / 4)) - 0.60 * np.sin(np.linspace(0, pi / 4))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
 from boatsim.errors import BadInput
@@ -152,8 +153,9 @@ def test_corrected_controller_meets_its_bars(test: str, mode: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("factor", [0.60, 0.75])
-@pytest.mark.parametrize("mode", ["", "gyro"], ids=["speed sensor", "gyro only"])
+@pytest.mark.parametrize(
+    ("mode", "factor"), [("", 0.60), ("gyro", 0.75), long("", 0.75), long("gyro", 0.60)]
+)
 @EACH_TEST
 def test_bars_hold_whatever_the_reverse_efficiency(test: str, mode: str, factor: float) -> None:
     seen = requested_metrics(run(with_reverse(shipped(test, mode), factor)))

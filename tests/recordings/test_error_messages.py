@@ -128,7 +128,7 @@ def test_a_controller_of_ones_own_that_can_not_be_read(tmp_path: Path, text: str
     assert "own.py" in line_of("margins", tmp_path / "own.py")
 
 
-@pytest.mark.parametrize("name", ["we\"ird 'q'", "gr\u00f6\u00dfe", "x\udcff", "new\nline", "50%n"])
+@pytest.mark.parametrize("name", ["we\"ird 'q' gr\u00f6\u00dfe 50%n", "x\udcff new\nline"])
 @pytest.mark.slow
 def test_a_path_may_have_any_name(tmp_path: Path, name: str) -> None:
     place = tmp_path / name

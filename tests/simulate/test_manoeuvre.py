@@ -335,7 +335,7 @@ STEERED = [
 ]
 
 
-@pytest.mark.parametrize("name", few(STEERED))
+@pytest.mark.parametrize("name", few(STEERED, 1, 6))
 def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(name: str) -> None:
     zigzag, turn = (
         manoeuvre_scenario("zigzag", name, angle=10.0),
@@ -480,6 +480,7 @@ def pushed_otter(**push: float) -> vessel.Vessel:
     return replace(boat, manoeuvring=complete_manoeuvring_table(boat))
 
 
+@pytest.mark.slow
 def test_a_steady_course_is_where_a_simulation_with_its_helm_stays() -> None:
     boat = pushed_otter(roll=20.0, yaw=3.0, sway=5.0)
     found = steady_approach(boat)

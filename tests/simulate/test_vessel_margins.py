@@ -50,7 +50,7 @@ def test_analytic_and_simulated_delay_margins_of_the_joystick_agree() -> None:
         long("l1_joystick", ("heavy", "narrow")),
         long("l1_joystick_sway", ("heavy", "wide")),
         long("l1_joystick_blind", ("light",)),
-        ("pid_autopilot", ("light",)),
+        long("pid_autopilot", ("light",)),
     ],
 )
 @pytest.mark.slow

@@ -52,6 +52,7 @@ def test_a_disturbance_of_neutral_value_changes_no_number_of_any_boat(disturbanc
         assert values.tolist() == boats.value(key).tolist()
 
 
+@pytest.mark.slow
 def test_the_neutral_point_of_every_ladder_is_the_run_without_disturbance() -> None:
     one = controllers("pid_autopilot")
     tiny = {d.name: [d.neutral] for d in DISTURBANCES}
@@ -63,6 +64,7 @@ def test_the_neutral_point_of_every_ladder_is_the_run_without_disturbance() -> N
         assert (ladder.points[0].errors == plain.errors).all()
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_numbers_and_another_seed_others(found: Robustness) -> None:
     both = controllers("pid_autopilot", "l1_joystick")
     again = run_benchmark(both, boat(), FEW, 3, ladders={"delay": [0.05]})
@@ -198,6 +200,7 @@ def test_bad_input_gets_one_clear_line(names, ladders, message: str) -> None:
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_a_disturbance_that_does_not_apply_is_named_with_its_reason() -> None:
     one = controllers("l1_cruise")
     ladders = {"motor_loss": [0.5], "delay": [0.0]}

@@ -273,6 +273,7 @@ def columns(folder: Path) -> dict[str, list[Any]]:
     return parquet.read_table(folder / "sweep.parquet").to_pydict()
 
 
+@pytest.mark.slow
 def test_a_sweep_has_a_row_for_each_draw_at_each_point_and_the_same_draws_at_all(
     short: str, tmp_path: Path
 ) -> None:
@@ -570,6 +571,7 @@ def test_a_folder_of_another_sweep_is_refused_in_a_line(short: str, tmp_path: Pa
         boatsim.sweep(short, runs=2, out=tmp_path / "out", jobs=1)
 
 
+@pytest.mark.slow
 def test_processes_and_this_one_give_the_same_table(short: str, tmp_path: Path) -> None:
     made = make_plan(
         [short],

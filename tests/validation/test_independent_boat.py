@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from alike import long
 from answers import diagnosed, named, nothing_missing
 from real_boat import FURTHER, Real, recorded
 
@@ -91,6 +92,8 @@ CASES = (
 # Other tests diagnose the first three on other data, or an effect of the same kind is among the rest.
 REPEATED = {
     "current",
+    "quadratic_damping",
+    "damping_error",
     "thrust_lag",
     "tether",
     "thrust_imbalance",
@@ -114,7 +117,7 @@ def test_an_entry_is_named_with_its_values(tmp_path: Path, case: Case) -> None:
     named(diagnosed(runs, tmp_path, "trial_boat", FURTHER), case.entry, case.true, case.more)
 
 
-@pytest.mark.parametrize("entry", ["current", "quadratic_damping", "wall_effect"])
+@pytest.mark.parametrize("entry", [long("current"), long("quadratic_damping"), "wall_effect"])
 def test_the_same_runs_of_a_boat_without_it_miss_nothing(tmp_path: Path, entry: str) -> None:
     case = next(c for c in CASES if c.entry == entry)
     sound = replace(case, real=Real())

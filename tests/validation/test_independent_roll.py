@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import long
 from answers import diagnosed, named, nothing_missing
 from scipy.integrate import solve_ivp
 
@@ -86,6 +87,7 @@ def test_a_linear_hull_of_the_stated_height_misses_nothing(tmp_path: Path) -> No
     nothing_missing(diagnosed(decays(Hull()), tmp_path, "kvlcc2_roll"))
 
 
+@pytest.mark.slow
 def test_dry_friction_is_not_taken_for_waves(tmp_path: Path) -> None:
     """It goes to and fro with the hull, at her own rhythm, but always against her: no entry does,
     and waves do not."""
@@ -101,6 +103,7 @@ def test_dry_friction_is_not_taken_for_waves(tmp_path: Path) -> None:
     assert rms["patched"] < 0.5 * rms["recalibrated"]
 
 
+@pytest.mark.slow
 def test_a_hull_that_rights_herself_better_from_one_side_is_told_by_the_square_of_heel(
     tmp_path: Path,
 ) -> None:
@@ -112,7 +115,7 @@ def test_a_hull_that_rights_herself_better_from_one_side_is_told_by_the_square_o
     assert term["of"] == "roll angle squared" and term["value"] == pytest.approx(-20.0, rel=0.1)
 
 
-@pytest.mark.parametrize("askew", [-0.06, 0.06])
+@pytest.mark.parametrize("askew", [-0.06, long(0.06)])
 def test_an_inclinometer_askew_is_no_moment_and_hides_no_law(tmp_path: Path, askew: float) -> None:
     """The righting moment bends about upright, wherever the zero of the instrument lies."""
     runs = [

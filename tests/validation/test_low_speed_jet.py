@@ -114,6 +114,7 @@ def test_craft_as_modelled_has_nothing_missing(tmp_path: Path) -> None:
     assert diagnosed(tmp_path, Real()).findings.answer["verdict"] == "nothing_missing"
 
 
+@pytest.mark.long
 def test_own_run_has_nothing_missing(tmp_path: Path) -> None:
     run_into_folder(tmp_path / "own", scenario.load("jet_ski/low_turns_l1"))
     assert (

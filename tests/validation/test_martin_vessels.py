@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis import pipeline
@@ -239,7 +240,7 @@ def named(said: dict[str, Any]) -> dict[str, Any]:
     return {e["name"]: e["parameters"] for e in said["effects"]}
 
 
-@pytest.mark.parametrize("slow", [None, 4.0])
+@pytest.mark.parametrize("slow", [long(None), long(4.0)])
 def test_a_slow_servo_is_named_and_a_sound_one_is_not(tmp_path: Path, slow: float | None) -> None:
     """Zig-zags whose demand turns at 5 deg/s: the machine follows at once, or at 4 deg/s."""
     ship, machine = at_speed(13 * 0.514444, 7.430879), radians(slow or 500.0)

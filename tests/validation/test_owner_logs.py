@@ -5,9 +5,11 @@ import ast
 from dataclasses import replace
 from math import cos, sin
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 
 from validation.owner_logs import boats, cases, faults
 from validation.owner_logs.causes import CAUSES
@@ -112,8 +114,23 @@ def example(boat: boats.Boat, form: str, number: int = 1, lasts: float = 30.0) -
     return cases.Case(number, "good", boat, form, "", "", "", (lasts, lasts), 4)
 
 
-@pytest.mark.parametrize("form", ["csv", "parquet", "BIN", "mcap", "ros1", "ros2", "ulog", "nmea"])
-@pytest.mark.parametrize("kind", [boats.workboat, boats.survey_catamaran, boats.launch])
+FORMS = ["csv", "parquet", "BIN", "mcap", "ros1", "ros2", "ulog", "nmea"]
+KINDS = [boats.workboat, boats.survey_catamaran, boats.launch]
+
+
+def forms_and_kinds() -> list[Any]:
+    """All pairs of a form and a kind; those beyond one kind for each form are long tests."""
+    pairs: list[Any] = []
+    for i, form in enumerate(FORMS):
+        for j, kind in enumerate(KINDS):
+            if i % len(KINDS) == j:
+                pairs.append((form, kind))
+            else:
+                pairs.append(long(form, kind))
+    return pairs
+
+
+@pytest.mark.parametrize(("form", "kind"), forms_and_kinds())
 def test_what_was_written_is_what_a_recording_holds(form: str, kind, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     boat = kind(np.random.default_rng(3))
     rng = np.random.default_rng(7)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import few
 
 from boatsim.diagnosis.loading import open_recording
 from validation.calibration.campaign import Job, causes_of
@@ -27,6 +28,7 @@ CHEAP = Trial(
 )
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:
     for folder in ("one", "two"):
         make_trial(CHEAP, 3, tmp_path / folder)
@@ -48,7 +50,7 @@ def test_a_set_has_all_kinds_for_every_vessel_and_conceals_half_of_the_single_ef
         assert len(hidden) == (3 if plan.kept else 0)
 
 
-@pytest.mark.parametrize("vessel", PLANS)
+@pytest.mark.parametrize("vessel", few(PLANS, 2))
 def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
     tmp_path: Path, vessel: str
 ) -> None:
@@ -66,6 +68,7 @@ def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
         assert rms["recalibrated"] == pytest.approx(rms["true_structure"], rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
     gains = [
         float(evidence_gains(simulate_trial(CHEAP, (3, 1), np.array([s])), [False])[0])

@@ -27,10 +27,12 @@ def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a
     assert roll.error_ratio(windows) <= 0.3
 
 
+@pytest.mark.slow
 def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
     assert roll.error_ratio(roll.diagnose_thirds(*roll.open_release(roll.AT_REST))) <= 0.2
 
 
+@pytest.mark.slow
 def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
     windows: Diagnosis,
 ) -> None:
@@ -87,6 +89,7 @@ def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     )
 
 
+@pytest.mark.slow
 def test_nothing_is_found_in_the_norms_of_the_nominal_itself() -> None:
     tables = thesis.Tables(tests=("sway_1",)).only(("sway_1",), facts=False)
     tables.data = {

@@ -10,7 +10,7 @@ import answers
 import boats
 import numpy as np
 import pytest
-from alike import slow
+from alike import long
 from scipy.integrate import solve_ivp
 
 from boatsim.physics import vessel
@@ -247,9 +247,9 @@ def recorded(real: Real, seed: int) -> Recording:
     ("astern", "name"),
     [
         ({"screw": 0.7}, "weak_screw"),
-        slow(({"pod": 0.8}, "weak_pod")),
-        slow((dict.fromkeys(THRUSTERS, 0.85), "weak_reverse")),
-        ({}, ""),
+        long({"pod": 0.8}, "weak_pod"),
+        (dict.fromkeys(THRUSTERS, 0.85), "weak_reverse"),
+        long({}, ""),
     ],
     ids=lambda case: case if isinstance(case, str) else "",
 )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from alike import long
+from alike import few, long
 from real_boat import Real, recorded
 
 from boatsim.diagnosis import pipeline
@@ -84,7 +84,7 @@ def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
     assert found["verdict"] == "nothing_missing" and not named(found), found["sentence"]
 
 
-@pytest.mark.parametrize("case", NOTHING_TO_SEE)
+@pytest.mark.parametrize("case", few(NOTHING_TO_SEE))
 def test_nothing_is_named_where_nothing_is_missing(case: str, tmp_path: Path) -> None:
     found = answer(NOTHING_TO_SEE[case](), tmp_path)
     assert found["verdict"] == "nothing_missing" and not named(found)
@@ -111,9 +111,8 @@ EFFECTS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [6.0, long(12.0)])
-@pytest.mark.parametrize("case", EFFECTS)
+@pytest.mark.parametrize("case", few(EFFECTS, 0, 3))
 def test_a_short_run_names_what_is_there_or_nothing(
     case: str, seconds: float, tmp_path: Path
 ) -> None:

@@ -118,6 +118,7 @@ def test_the_path_has_no_gap_between_two_pieces(tmp_path):
     assert lines[0] >= 600
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_keeps_what_it_logged(tmp_path):
     with pytest.raises(KeyboardInterrupt), RerunLog(tmp_path / "run.rrd", SCENE) as log:
         for piece in pieces(circle())[:4]:
@@ -385,6 +386,7 @@ def test_rerun_accepts_the_log_of_a_diagnosis(tmp_path):
     assert verified(tmp_path / "d.rrd")
 
 
+@pytest.mark.slow
 def test_a_log_of_which_the_writer_was_killed_can_be_read_and_gets_its_index_from_rerun(tmp_path):
     log = RerunLog(tmp_path / "run.rrd", SCENE)
     for piece in pieces(circle()):

@@ -63,6 +63,7 @@ def drifting(signals: dict[str, np.ndarray], t: np.ndarray, speed: float) -> Non
         signals[name] = np.where(since, values + noise, signals[name])
 
 
+@pytest.mark.slow
 def test_drives_that_are_off_while_the_boat_drifts_are_reported(tmp_path):
     (finding,) = findings(tmp_path, DRIFT)
     assert (finding.name, finding.run) == ("commands_ignored", "two")

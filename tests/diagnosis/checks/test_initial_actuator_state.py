@@ -33,6 +33,7 @@ def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
     assert off["heading_rms_rad"]["simulated"] < 1e-4
 
 
+@pytest.mark.slow
 def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
     program, _ = program_to_replay(boat)

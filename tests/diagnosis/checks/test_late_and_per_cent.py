@@ -144,6 +144,7 @@ def test_late_sensors_are_found_with_the_line_that_mends_them(
     assert not faults(path)
 
 
+@pytest.mark.slow
 def test_a_rate_that_is_late_is_shifted_itself(tmp_path: Path, mine: Path) -> None:
     log = simulated(tmp_path, str(mine), GOALS["mine"])
     path = logged(log, tmp_path, str(mine), GOALS["mine"], {"r_radps": 0.5})

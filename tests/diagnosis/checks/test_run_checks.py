@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from answers import diagnosed
 from real_boat import Real, recorded
 from typer.testing import CliRunner
@@ -70,7 +71,9 @@ def corrected(folder: Path, entry: Mapping[str, Any]) -> None:
     (folder / "recording.toml").write_text("\n".join(entry["lines"]) + "\n")
 
 
-@pytest.mark.parametrize("title", FAULTS)
+@pytest.mark.parametrize(
+    "title", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in FAULTS]
+)
 def test_each_fault_is_found_and_named(title: str, tmp_path: Path) -> None:
     fault = FAULTS[title]
     found = found_in(files(tmp_path, [fault.apply(log, BOAT) for log in good()]))
@@ -101,9 +104,7 @@ def test_the_line_written_into_the_recording_toml_puts_it_right(title: str, tmp_
         assert np.abs(off - turns).max() < 1e-9, name
 
 
-@pytest.mark.parametrize(
-    "title", ["heading in degrees", pytest.param("y to port, heading too", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("title", [long("heading in degrees"), "y to port, heading too"])
 @pytest.mark.slow
 def test_the_diagnosis_of_the_corrected_log_is_that_of_the_good_one(
     title: str, tmp_path: Path
@@ -139,10 +140,10 @@ def test_a_trial_is_a_good_log(trial: str) -> None:
     [
         Real(),
         Real(late=0.3),
-        pytest.param(Real(stream=(0.1, -0.08)), marks=pytest.mark.slow),
-        pytest.param(Real(power=(1.0, 0.6)), marks=pytest.mark.slow),
-        pytest.param(Real(bent=(0.1, 0.1)), marks=pytest.mark.slow),
-        pytest.param(Real(munk=1.0), marks=pytest.mark.slow),
+        Real(stream=(0.1, -0.08)),
+        long(Real(power=(1.0, 0.6))),
+        long(Real(bent=(0.1, 0.1))),
+        Real(munk=1.0),
     ],
     ids=["as written", "late", "current", "weak thruster", "bent", "munk"],
 )
@@ -158,7 +159,7 @@ def test_what_a_boat_does_is_no_fault_of_its_log(real: Real, tmp_path: Path) -> 
 def test_a_mirrored_log_is_the_first_thing_that_a_diagnosis_says(tmp_path: Path) -> None:
     fault = FAULTS["y to port, heading too"]
     # half of each log is enough
-    halves = [{n: v[: len(v) // 2] for n, v in log.items()} for log in good(3)]
+    halves = [{n: v[: len(v) // 2] for n, v in log.items()} for log in good()]
     logs = [fault.apply(log, BOAT) for log in halves]
     runs = [
         Recording(f"run_{k}", log["t_s"], {n: v for n, v in log.items() if n != "t_s"})
@@ -192,6 +193,7 @@ def test_the_command_leaves_with_its_codes_and_one_line(tmp_path: Path) -> None:
     assert refused.exit_code == 2 and 'psi_rad = "psi_rad * deg"' in refused.stderr
 
 
+@pytest.mark.slow
 def test_nothing_is_advised_that_the_boat_can_not_do(tmp_path: Path) -> None:
     """Thrusters that can not be turned are not told to turn, and one that can only push is not told
     to go astern."""

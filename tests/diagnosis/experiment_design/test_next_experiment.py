@@ -128,7 +128,7 @@ def course(problem: Problem, winner: Fit, plan: next_experiment.Plan) -> Array:
     return np.asarray(found.recording.measured)
 
 
-@pytest.mark.parametrize("case", few(CONFUSABLE, 1))
+@pytest.mark.parametrize("case", few(CONFUSABLE, 0))
 def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
     problem, winner, rival = tie(case)
     name, _, other, script = CONFUSABLE[case]

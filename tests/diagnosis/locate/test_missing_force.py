@@ -385,6 +385,7 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
 # ---- structure in what is left over
 
 
+@pytest.mark.slow
 def test_what_is_left_of_a_boat_that_lacks_nothing_goes_with_nothing() -> None:
     p = [
         find_structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2))))

@@ -84,6 +84,7 @@ def without_harm(common: tuple[Problem, Fit, Fit], red: Missing) -> tuple[Fit, F
     return found, remove_harm_to_groups(sets, found, named, held_out(pushed, red))[0]
 
 
+@pytest.mark.slow
 def test_an_effect_that_harms_a_group_acts_in_the_others_alone(
     common: tuple[Problem, Fit, Fit],
 ) -> None:
@@ -108,6 +109,7 @@ def test_recordings_of_one_group_are_not_compared_by_group(
     assert harmed_groups(problem, base, found, alike, HORIZON) == ()
 
 
+@pytest.mark.slow
 def test_refitted_coefficients_that_harm_a_group_are_not_adopted() -> None:
     runs = [sailed("blue 1", "blue", 1, weak), sailed("blue 2", "blue", 2, weak)]
     levels = prior_noise_levels(BOAT, runs)

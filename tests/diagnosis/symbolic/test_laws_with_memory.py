@@ -103,6 +103,7 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
         y = late
 
 
+@pytest.mark.slow
 def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
     compiled, found = Batch(vessel.load_vessel("trial_boat", extra=LAWS)), {}
     for step in (0.04, 0.02, 0.0025):

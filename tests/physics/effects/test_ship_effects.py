@@ -413,7 +413,7 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
 @pytest.mark.parametrize(
     ("real", "wanted"),
     [
-        (Real(), {}),
+        long(Real(), {}),
         (
             Real(drift=2500.0, brake=60.0),
             {"speed_loss_in_turn": {"mass_kg": 2500.0}, "steering_drag": {"drag_Nprad2": 60.0}},

@@ -105,6 +105,7 @@ def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
         assert np.array_equal(native, compiled) and np.ptp(native) > 0.1
 
 
+@pytest.mark.slow
 def test_a_prepared_call_has_the_numbers_that_it_is_given() -> None:
     program = Program(load_vessel("joystick_boat"))
     k, values, on = np.zeros(program.module.K), program.values(), program.effect_switches()
@@ -145,6 +146,7 @@ def test_an_array_of_another_type_is_refused() -> None:
         code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
 
 
+@pytest.mark.slow
 def test_filters_of_a_measured_wave_give_the_numbers_of_numba_to_the_last_bit(
     tmp_path: Path,
 ) -> None:
