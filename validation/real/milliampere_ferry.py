@@ -41,16 +41,6 @@ NOTES = """vessel = {vessel!r}
 [noise]                         # the owner's, of the receiver with RTK
 position_sd_m = 0.003
 heading_sd_rad = 0.0005
-
-# each run is of another mode of control
-[runs.maneuvering1_a]
-group = ["position holding"]
-
-[runs.nlp1_a]
-group = ["nonlinear allocation"]
-
-[runs.qp1_a]
-group = ["quadratic allocation"]
 """
 
 
