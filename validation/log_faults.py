@@ -90,6 +90,11 @@ def _exchange_commands(columns: Columns, boat: Vessel) -> Columns:
     return columns | {n: columns[other] for n, other in swap.items()}
 
 
+def _reverse_one_command(columns: Columns, boat: Vessel) -> Columns:
+    name = next(n for n in boat.commands if boat.side(n) > 0 and unit_of(n) != "rad")
+    return columns | {name: -columns[name]}
+
+
 def _commands_in_percent(columns: Columns, boat: Vessel) -> Columns:
     drives = [n for n in boat.commands if unit_of(n) != "rad"]
     return columns | {n: 100.0 * columns[n] / boat.commands[n].high for n in drives}
@@ -160,6 +165,9 @@ FAULTS: dict[str, Fault] = {
     ),
     "thrusters exchanged": Fault(
         _exchange_commands, ("thrusters_exchanged", "mirrored"), _has_two_similar_drives
+    ),
+    "one thrust reversed": Fault(
+        _reverse_one_command, ("thrust_reversed",), _has_two_similar_drives
     ),
     "heading in degrees": Fault(
         _column_fault(psi_rad=lambda c: np.degrees(c["psi_rad"]) % 360.0), ("heading_in_degrees",)

@@ -2282,6 +2282,14 @@ class DescribeConfig:
         "zig-zags between 250 and 750 million.",
         low=1,
     )
+    total_budget: int = setting(
+        1_000_000_000,
+        "steps x dof",
+        "Work of a whole diagnosis up to the end of the description, so that it ends within ten "
+        "minutes of CPU: where the search used its budget, less is left to the description. Half "
+        "an hour of zig-zags needs 200 million before the description.",
+        low=1,
+    )
     fitted_terms: int = setting(
         4,
         "count",

@@ -353,8 +353,10 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     usual = candidate_library(BOAT)
     other = candidate_library(BOAT, config=replace(DEFAULT, select=select, describe=describe))
     single = {f"drive_gain_error_{name}" for name in BOAT.names_of("thruster")}
-    for effect in ("drive_lag", "drive_delay"):
+    for effect in ("drive_lag", "drive_delay", "drive_rate_limit"):
         single |= {f"{effect}_{channel}" for channel in ("thrust_port_N", "thrust_starboard_N")}
+    for channel in ("steer_port_rad", "steer_starboard_rad"):
+        single.add(f"azimuth_rate_limit_{channel}")
     assert set(other.tested_names) - set(usual.tested_names) == single
     assert "fewer than 3" in usual.inapplicable["drive_gain_error"]
     assert [e.name for e in other.placeholders] == ["described_1"]

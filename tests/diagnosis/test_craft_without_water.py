@@ -66,10 +66,12 @@ def floated(
     slope: tuple[float, float] = (0.0, 0.0),
     lags: Array | None = None,
     delays: Array | None = None,
+    rates: Array | None = None,
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
-    `lags` are time constants of the fans [s], and `delays` their dead times in rows.
+    `lags` are time constants of the fans [s], `delays` their dead times in rows, and `rates` the
+    largest rates of their thrust [N/s].
     """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
@@ -80,10 +82,15 @@ def floated(
     for i, late in enumerate(np.zeros(len(FANS), int) if delays is None else delays):
         ordered[late:, i] = commands[: ROWS - late, i]
         ordered[:late, i] = commands[0, i]
-    fading = np.exp(-1.0 / RATE / np.maximum(lags, 1e-9))
+    fastest = np.full(len(FANS), np.inf) if rates is None else rates
 
-    def rates(s: Array, time: float, order: Array, begin: Array) -> list[float]:
-        thrust = order + (begin - order) * np.exp(-time / np.maximum(lags, 1e-9))
+    def thrust_after(time: float, order: Array, begin: Array) -> Array:
+        followed = order + (begin - order) * np.exp(-time / np.maximum(lags, 1e-9))
+        most = fastest * max(time, 1e-12)
+        return begin + np.clip(followed - begin, -most, most)
+
+    def derivatives(s: Array, time: float, order: Array, begin: Array) -> list[float]:
+        thrust = thrust_after(time, order, begin)
         X, Y = thrust @ np.cos(angle), thrust @ np.sin(angle)
         N = thrust @ (x * np.sin(angle) - y * np.cos(angle))
         c, k = np.cos(s[2]), np.sin(s[2])
@@ -94,8 +101,8 @@ def floated(
     s, poses, thrust = np.zeros(6), [], strengths * ordered[0]
     for order in strengths * ordered:
         poses.append(s[:3])
-        s = odeint(rates, s, [0.0, 1.0 / RATE], args=(order, thrust), rtol=1e-8)[-1]
-        thrust = order + (thrust - order) * fading
+        s = odeint(derivatives, s, [0.0, 1.0 / RATE], args=(order, thrust), rtol=1e-8)[-1]
+        thrust = thrust_after(1.0 / RATE, order, thrust)
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [3e-4, 3e-4, 2e-3]
     signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
     signals |= {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
@@ -123,7 +130,8 @@ def test_slope_and_yaw_inertia_are_candidates_only_without_water():
 
 def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
-    names |= {f"drive_lag_{fan}_N" for fan in FANS} | {f"drive_delay_{fan}_N" for fan in FANS}
+    for effect in ("drive_lag", "drive_delay", "drive_rate_limit"):
+        names |= {f"{effect}_{fan}_N" for fan in FANS}
     assert names <= set(candidate_library(CRAFT).tested_names)
     two = candidate_library(vessel.load_vessel("trial_boat"))
     assert "fewer than 3" in two.inapplicable["drive_gain_error"]
@@ -180,6 +188,7 @@ DYNAMICS = (
     "command_delay",
     *(f"drive_lag_{fan}_N" for fan in FANS),
     *(f"drive_delay_{fan}_N" for fan in FANS),
+    *(f"drive_rate_limit_{fan}_N" for fan in FANS),
 )
 FAN = np.arange(len(FANS)) == 2  # the third one, b1
 
@@ -189,10 +198,13 @@ FAN = np.arange(len(FANS)) == 2  # the third one, b1
     [
         ({"lags": 0.12 * FAN}, "drive_lag_b1_N", "time_constant", 0.12),
         ({"delays": 5 * FAN}, "drive_delay_b1_N", "delay", 5 / RATE),
+        ({"rates": np.where(FAN, 0.3, np.inf)}, "drive_rate_limit_b1_N", "rate", 0.3),
     ],
 )
 @pytest.mark.slow
-def test_a_lag_and_a_dead_time_of_one_fan_are_found_with_the_fan(changed, name, parameter, true):
+def test_a_lag_a_dead_time_and_a_rate_limit_of_one_fan_are_found_with_the_fan(
+    changed, name, parameter, true
+):
     ranking = ranked(floated(1, **changed), floated(2, **changed), tested=DYNAMICS)
     assert [one.name for one in ranking.named] == [name]
     value, sd = ranking.best.value(name, parameter)

@@ -3,7 +3,7 @@
 A reinterpretation is a change of columns that a user may have forgotten.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees, pi
 from operator import itemgetter
@@ -20,7 +20,7 @@ from boatsim.diagnosis.checks.finding import (
 )
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Effect
 from boatsim.physics.signals import PLANAR_DOF
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
@@ -187,8 +187,7 @@ def _drives(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
 ) -> Iterator[Reinterpretation]:
     channels = _common_commands(recordings, vessel)
-    exchanged = _exchanged_sides(channels)
-    if exchanged:
+    for exchanged in _exchanges(vessel, channels):
         names = " and ".join(sorted(corrected_columns(exchanged)))
         yield Reinterpretation("thrusters_exchanged", f"{names} are exchanged", exchanged)
     reversible = [n for n in channels if vessel.commands[n].low < 0.0 < vessel.commands[n].high]
@@ -197,11 +196,13 @@ def _drives(
         if not same_unit:
             continue
         names = ", ".join(same_unit)
-        yield Reinterpretation(
-            "rudder_reversed" if unit == "rad" else "thrust_reversed",
-            f"the sign of {names} is reversed",
-            scaling_corrections(same_unit, -1.0),
-        )
+        reversed_name = "rudder_reversed" if unit == "rad" else "thrust_reversed"
+        for reversed_channels in _sets_of_reversed(same_unit):
+            yield Reinterpretation(
+                reversed_name,
+                f"the sign of {', '.join(reversed_channels)} is reversed",
+                scaling_corrections(reversed_channels, -1.0),
+            )
         verb = "are" if len(same_unit) > 1 else "is"
         for words, factor in _command_shares(recordings, vessel, same_unit, config):
             yield Reinterpretation(
@@ -217,6 +218,84 @@ def _common_commands(recordings: Sequence[Recording], vessel: Vessel) -> list[st
     for recording in recordings:
         common = [name for name in common if name in recording.signals]
     return common
+
+
+def _sets_of_reversed(channels: list[str]) -> list[list[str]]:
+    """Channels of one unit whose signs may be reversed: all of them, and each one alone."""
+    if len(channels) < 2:
+        return [channels]
+    return [channels, *([name] for name in channels)]
+
+
+def _exchanges(vessel: Vessel, channels: list[str]) -> list[tuple[Change, ...]]:
+    """Exchanges of the two sides: of all drives, of the channels of one unit, of a pair of drives.
+
+    The sides are known by the names of the channels, or by the places of the drives on the vessel.
+    """
+    pairs = _mirrored_drives(vessel, channels)
+    everything = _exchanged_sides(channels)
+    if not everything:
+        everything = tuple(change for pair in pairs for change in pair)
+    found = [everything] if everything else []
+    for unit in dict.fromkeys(map(unit_of, channels)):
+        found.append(tuple(c for c in everything if unit_of(c.column) == unit))
+    found += pairs
+    different = {frozenset(changes): changes for changes in found if changes}
+    return list(different.values())
+
+
+def _mirrored_drives(vessel: Vessel, channels: list[str]) -> list[tuple[Change, ...]]:
+    """Changes that exchange the channels of two drives, for each pair of mirrored drives.
+
+    Two drives are mirrored if they are of one kind and lie at the same distance from the
+    centreline, on its two sides and equally far ahead.
+    """
+    drives = []
+    for effect in vessel.effects:
+        inputs = {}
+        for role, channel in vessel.specified_inputs(effect).items():
+            source = _recorded_command(vessel, channel)
+            if source in channels:
+                inputs[role] = source
+        if inputs and float(getattr(effect, "y", 0.0)) != 0.0:
+            drives.append((effect, inputs))
+    pairs = []
+    for i, (one, inputs) in enumerate(drives):
+        for other, counterparts in drives[i + 1 :]:
+            if _are_mirrored(one, other) and inputs.keys() == counterparts.keys():
+                pairs.append(_exchange(inputs, counterparts))
+    return [pair for pair in pairs if pair]
+
+
+def _recorded_command(vessel: Vessel, channel: str | float) -> str:
+    """The command that a log has for a channel: the raw command that feeds it, or itself."""
+    if not isinstance(channel, str):
+        return ""
+    for effect in vessel.effects:
+        if channel in vessel.target_actuators(effect):
+            source = vessel.command_for_actuator(effect, channel)
+            if source:
+                return source
+    return channel
+
+
+def _are_mirrored(one: Effect, other: Effect) -> bool:
+    """Whether two drives of one kind lie opposite each other."""
+    if type(one) is not type(other):
+        return False
+    ahead = [float(getattr(effect, "x", 0.0)) for effect in (one, other)]
+    aside = [float(getattr(effect, "y", 0.0)) for effect in (one, other)]
+    return bool(np.isclose(ahead[0], ahead[1]) and np.isclose(aside[0], -aside[1]))
+
+
+def _exchange(inputs: Mapping[str, str], counterparts: Mapping[str, str]) -> tuple[Change, ...]:
+    """Changes that exchange the channels of two drives, by role."""
+    changes = []
+    for role, name in inputs.items():
+        counterpart = counterparts[role]
+        if name != counterpart:
+            changes += [Change(name, counterpart), Change(counterpart, name)]
+    return tuple(changes)
 
 
 def _exchanged_sides(channels: list[str]) -> tuple[Change, ...]:

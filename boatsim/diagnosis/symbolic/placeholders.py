@@ -37,7 +37,8 @@ def set_placeholder_term(
     """Set a placeholder effect of the compiled vessel program to a term of the symbolic regression.
 
     A term that is an event of one recording (`term.run`) acts in that recording alone; in all
-    others the placeholder is set so that it never acts.
+    others the placeholder is set so that it never acts. Its parameters there are the same for every
+    such term, so that the filter repeats no work on recordings in which nothing changes.
 
     Args:
         problem: The estimation problem.
@@ -45,11 +46,13 @@ def set_placeholder_term(
         term: A term of the symbolic regression.
         recordings: Recordings whose parameter values are changed.
     """
-    parameters = term.with_all_parameters(problem.program.vessel).law_parameters()
+    vessel = problem.program.vessel
+    parameters = term.with_all_parameters(vessel).law_parameters()
+    unused = type(term).from_settings({"name": placeholder}).with_all_parameters(vessel)
+    inactive = unused.law_parameters() | NEVER
     for recording in recordings:
-        _set(problem, placeholder, parameters, recording.values)
-        if term.run not in ("", recording.name):
-            _set(problem, placeholder, NEVER, recording.values)
+        acts = term.run in ("", recording.name)
+        _set(problem, placeholder, parameters if acts else inactive, recording.values)
 
 
 def _set(

@@ -75,7 +75,8 @@ def select_terms(
     report(DESCRIBING)
     config = problem.config
     formula = Formula(problem, best, {})
-    budget = SearchBudget(problem.work_count, config.describe.budget)
+    left = max(config.describe.total_budget - problem.work_count.work, 0)
+    budget = SearchBudget(problem.work_count, min(config.describe.budget, left))
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     while len(formula.terms) < config.describe.most_terms:
         if formula.terms and budget.is_spent:

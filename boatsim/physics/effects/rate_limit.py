@@ -21,6 +21,7 @@ SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
 NEVER = 1e6  # [1/s] rate without a limit
 INSTANT = 50.0  # [rad/s] upper bound of the rate of a steering; it counts as immediate
 USUAL = 2.0  # [rad/s] on the reference hull, 115 deg/s; about which a fit expects it
+IMMEDIATE = 1e9  # [1/s] upper bound of the rate of a drive; it counts as immediate
 
 
 @njit(inline="always")
@@ -139,6 +140,53 @@ SteeringRateLimit = preset_effect(
             "usual": USUAL,
         },
         "lag": {"spread": 0.3},
+    },
+    fixed={"instant": INSTANT},
+)
+
+
+DriveRateLimit = preset_effect(
+    RateLimit,
+    "DriveRateLimit",
+    words="the thrust or shaft rate of one drive changes at a limited rate",
+    shown_by="large steps of this drive alone",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    limits=("rate",),
+    thresholds={"rate": (0.1, 0.4, 1.5)},
+    frees={
+        "rate": {
+            "high": IMMEDIATE,
+            "words": "largest rate of change of this drive, in the unit of its channel per second",
+            # in largest commands of the drive per second
+            "spread": 1.0,
+            "inactive_value": IMMEDIATE,
+            "usual": 1.0,
+        },
+    },
+    fixed={"instant": IMMEDIATE},
+)
+
+AzimuthRateLimit = preset_effect(
+    RateLimit,
+    "AzimuthRateLimit",
+    words="the direction of one drive turns at a limited rate",
+    shown_by="large steps of the direction of this drive alone",
+    acts_on="angle",
+    once_per="actuator",
+    limits=("rate",),
+    ruled_out_by={"steering_measured": (True,)},
+    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
+    frees={
+        "rate": {
+            "low": 0.0005,
+            "high": INSTANT,
+            "unit": "rad/s",
+            "words": "largest rate of turn of this drive",
+            "spread": 2.0,
+            "inactive_value": INSTANT,
+            "usual": USUAL,
+        },
     },
     fixed={"instant": INSTANT},
 )

@@ -1,0 +1,56 @@
+"""Work of a description: a term costs nothing where it does not act, and the total has an end."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pushed_boat import laid, sail
+
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
+from boatsim.diagnosis.symbolic.term_selection import select_terms
+from boatsim.physics.base import Array
+from boatsim.physics.effects.described_force import DescribedForce
+
+
+def swinging(t: float, y: Array, command: Array) -> Array:
+    return np.array([2.0 * y[5] * abs(y[5]), 0.0, 0.3 * np.cos(2.0 * np.pi * t / 9.0)])
+
+
+@pytest.fixture(scope="module")
+def mapped() -> tuple[Problem, Fit]:
+    return laid(sail("first", 1, swinging)[0], sail("second", 2, swinging)[0])
+
+
+def event(period: float) -> DescribedForce:
+    term = {"axis": "sway", "acts": "swinging", "begin": 3.0, "end": 3.0 + period}
+    return replace(DescribedForce.from_settings(term), run="first")
+
+
+def test_a_term_of_one_recording_costs_no_pass_over_another(mapped: tuple[Problem, Fit]) -> None:
+    problem, best = mapped
+    effects = (*best.effects, "described_1")
+    free, on = problem.free_parameters(effects), problem.program.effect_switches(effects)
+    theta = np.append(best.theta, 0.2)
+    likelihoods, work = set[float](), []
+    for period in (2.0, 2.5, 3.0):
+        set_placeholder_term(problem, "described_1", event(period), problem.recordings)
+        likelihoods.add(problem.log_likelihood(free, theta, on, best.levels))
+        work.append([recording.filtered.work for recording in problem.recordings])
+    assert len(likelihoods) == 3
+    first, second = zip(*work, strict=True)
+    assert first[0] < first[1] < first[2]
+    assert second[0] == second[1] == second[2] > 0
+
+
+@pytest.mark.slow
+def test_a_description_ends_where_the_diagnosis_has_used_its_total_budget(
+    mapped: tuple[Problem, Fit],
+) -> None:
+    problem, best = mapped
+    assert len(select_terms(problem, best, ()).terms) > 1
+    spent = replace(DEFAULT.describe, total_budget=problem.work_count.work)
+    limited = replace(problem, config=replace(DEFAULT, describe=spent))
+    found = select_terms(limited, best, ())
+    assert len(found.terms) == 1 and not found.complete
