@@ -182,6 +182,7 @@ COLOURS = (
     "#768290",
     "#a3722f",
     "#5c8a4a",
+    "#8a5a7a",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

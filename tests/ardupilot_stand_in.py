@@ -136,6 +136,8 @@ class HeadingHold:
     def __init__(self, heading: float, throttle: float, rate: int, skid: bool = True) -> None:
         self.heading, self.throttle, self.period, self.skid = heading, throttle, 1.0 / rate, skid
         self.p, self.i, self.d = 0.8, 0.05, 0.4
+        if not skid:  # a steered drive turns the more, the more throttle it has
+            self.p, self.i, self.d = 0.4, 0.02, 0.6
         self.sum = 0.0
 
     def __call__(self, readings: Readings) -> dict[int, int]:
@@ -181,7 +183,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--port", type=int, default=9002)
     parser.add_argument("--rate", type=int, default=50, help="frames per second of simulated time")
     parser.add_argument("--seconds", type=float, default=60.0, help="simulated duration")
-    parser.add_argument("--throttle", type=float, default=0.4, help="share of full throttle")
+    parser.add_argument("--throttle", type=float, default=0.6, help="share of full throttle")
     parser.add_argument(
         "--steering", action="store_true", help="steering and throttle, no skid steering"
     )

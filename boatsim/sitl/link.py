@@ -39,7 +39,6 @@ class AutopilotLink:
         address: Address of this machine on which frames are received.
         port: Port of the socket.
         peer: Address and port of the autopilot; None before its first frame.
-        frames: Number of frames of the autopilot.
         repeated: Number of frames that were received again.
         missed: Number of frames that the counter shows but that were not received.
         malformed: Number of packets that are no servo outputs.
@@ -68,7 +67,7 @@ class AutopilotLink:
         self.address = address
         self.port: int = self._socket.getsockname()[1]
         self.peer: Any = None
-        self.frames = self.repeated = self.missed = self.malformed = self.foreign = 0
+        self.repeated = self.missed = self.malformed = self.foreign = 0
         self._counter: int | None = None  # of the last frame
         self._answer = b""  # to the last frame; empty before it was sent
         self._heard = 0.0  # monotonic time of the last packet of the autopilot
@@ -156,7 +155,6 @@ class AutopilotLink:
             return None
         if not restarted:
             self.missed += ahead - 1
-        self.frames += 1
         self._counter, self._answer = frame.counter, b""
         return ReceivedFrame(frame, restarted)
 

@@ -8,9 +8,10 @@ roll), as in SNAME.
 from math import cos, sin
 from typing import NamedTuple
 
-from boatsim.physics.particulars import GRAVITY
 from boatsim.simulate.stepper import Stepper
 
+# [m/s^2] standard gravity, which ArduPilot's estimator adds to the measured specific force
+GRAVITY = 9.80665
 Vector = tuple[float, float, float]
 
 

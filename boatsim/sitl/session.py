@@ -85,8 +85,8 @@ class AutopilotSession:
         self._steps_left = 0  # of the present frame, after the next one
         self._begin: MotionSample | None = None  # of the present frame
         self._end = 0.0  # [s] time that the run has reached
+        self._frames = 0
         self._before = self._counters()
-        self._before["frames"] -= 1  # the first frame belongs to this run
 
     def prepare_run(self, engine: Engine | OpenWater, stop: Callable[[], bool]) -> None:
         """Take the engine of the run, whose step becomes that of each frame.
@@ -149,6 +149,7 @@ class AutopilotSession:
         self._engine.step = duration / steps
         self._steps_left = steps - 1
         self._rates.add(frame.rate)
+        self._frames += 1
         commands = self._servos.commands(frame.pulses)
         if commands != self._commands or not self._changes:
             self._changes.append((t, commands))
@@ -163,6 +164,7 @@ class AutopilotSession:
             "autopilot": "ardupilot",
             "servo_outputs": self._servos.describe(),
             "frame_rates_hz": sorted(self._rates),
+            "frames": self._frames,
             **counted,
         }
 
@@ -177,7 +179,6 @@ class AutopilotSession:
     def _counters(self) -> dict[str, int]:
         link = self.link
         return {
-            "frames": link.frames,
             "repeated_frames": link.repeated,
             "missed_frames": link.missed,
             "malformed_packets": link.malformed,
