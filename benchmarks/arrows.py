@@ -27,7 +27,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "recordings control",
     "simulate",
     "learn",
-    "metrics warp fmu",
+    "metrics warp fmu sitl",
     "view",
     "drive",
     "diagnosis",
@@ -45,6 +45,7 @@ ABOUT = {  # captions of the folders in the picture
     "metrics": "metrics of a run",
     "warp": "boats on a GPU",
     "fmu": "boats elsewhere",
+    "sitl": "autopilots in the loop",
     "view": "rerun and pages",
     "drive": "hands on the sticks",
     "diagnosis": "what was left out",
@@ -181,6 +182,7 @@ COLOURS = (
     "#768290",
     "#a3722f",
     "#5c8a4a",
+    "#8a5a7a",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

@@ -5,6 +5,7 @@ import os
 import re
 import socket
 import stat
+import struct
 import subprocess
 import sys
 import time
@@ -19,6 +20,7 @@ import boats
 import numpy as np
 import pyarrow as pa
 import pytest
+import typer
 from alike import long
 from pyarrow import parquet
 from typer.testing import CliRunner
@@ -40,6 +42,8 @@ from boatsim.recordings import limits
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import read
 from boatsim.simulate import hull_assets, hull_xml_check
+from boatsim.sitl.link import LOOPBACK, AutopilotLink
+from boatsim.sitl.servo_packet import parse_servo_packet
 from boatsim.view import viewer
 
 HERE = Path(__file__)
@@ -764,13 +768,33 @@ def test_22_the_page_fetches_nothing_and_may_run_its_own_script_alone(server: Se
     assert reader.found == ["href=data:,"]
 
 
+def test_25_an_autopilot_is_heard_on_this_machine_only_and_alone() -> None:
+    command = typer.main.get_command(app).commands["sitl"]
+    addresses = [option.default for option in command.params if option.name == "address"]
+    assert addresses == [LOOPBACK]
+    assert parse_servo_packet(bytes(1000)) is None
+    frame = struct.pack("<HHI16H", 18458, 50, 1, *[1500] * 16)
+    with (
+        AutopilotLink(LOOPBACK, 0, 5.0) as link,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as first,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as second,
+    ):
+        first.sendto(frame, (LOOPBACK, link.port))
+        assert link.next_frame() is not None
+        second.sendto(frame, (LOOPBACK, link.port))
+        first.sendto(frame.replace(b"\1\0\0\0", b"\2\0\0\0"), (LOOPBACK, link.port))
+        received = link.next_frame()
+    assert received is not None and received.frame.counter == 2
+    assert link.foreign == 1 and link.peer != second
+
+
 def test_every_line_of_the_page_has_its_test() -> None:
     lines = {int(n) for n in re.findall(r"^(\d+)\. ", PAGE, re.MULTILINE)}
     tests = {
         int(n)
         for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)
     }
-    assert lines == tests == set(range(1, 25))
+    assert lines == tests == set(range(1, 26))
 
 
 def test_the_page_states_the_limits_that_are() -> None:

@@ -44,7 +44,7 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
     "Start here": ("demo",),
-    "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins", "robustness"),
+    "Simulate": ("run", "drive", "sitl", "sweep", "test", "manoeuvre", "margins", "robustness"),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
@@ -428,6 +428,127 @@ def drive(
         if live or serve:
             viewer = ViewerOptions(serve)
         return drive_vessel(task, out, open_, port, viewer)
+
+
+@app.command()
+@exits_with_code
+def sitl(
+    autopilot: Annotated[
+        Literal["ardupilot"], typer.Argument(help="Autopilot; its JSON interface is served.")
+    ],
+    vessel: Annotated[
+        str, typer.Argument(metavar="VESSEL", help="Name, folder or file of a vessel.")
+    ],
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FILE",
+            help="Water, wind, waves, current, load and start [default: open water].",
+        ),
+    ] = None,
+    load: Load = None,
+    wind: Annotated[
+        str | None,
+        typer.Option(metavar="SPEED,FROM", help="Wind in m/s and where it comes from in deg."),
+    ] = None,
+    waves: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HEIGHT,PERIOD,FROM",
+            help="Significant height in m, peak period in s, where the waves come from in deg.",
+        ),
+    ] = None,
+    current: Annotated[
+        str | None,
+        typer.Option(metavar="SPEED,TOWARD", help="Current in m/s and where it flows to in deg."),
+    ] = None,
+    servo: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="OUTPUT=CHANNEL",
+            help="Servo output that sets a channel, with -CHANNEL reversed. Repeatable "
+            "[default: the outputs of Rover's frames].",
+        ),
+    ] = None,
+    servo_file: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.toml", help="Tables [[servo]] with pulses and commands."),
+    ] = None,
+    seconds: Annotated[
+        float,
+        typer.Option(min=0.1, max=86400.0, metavar="S", help="Longest simulated duration [s]."),
+    ] = 3600.0,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="N", help="Random seed of waves [default: the scenario's]."),
+    ] = None,
+    instance: Annotated[
+        int,
+        typer.Option(min=0, max=5000, metavar="N", help="Number of ArduPilot's instance."),
+    ] = 0,
+    instances: Annotated[
+        int,
+        typer.Option(min=1, max=100, metavar="K", help="Number of vessels, one per autopilot."),
+    ] = 1,
+    address: Annotated[
+        str,
+        typer.Option(metavar="IP", help="Address of this machine on which to listen."),
+    ] = "127.0.0.1",
+    port: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=65535,
+            metavar="N",
+            help="UDP port of instance 0; others are 10 apart. 0: any free port.",
+        ),
+    ] = 9002,
+    wait: Annotated[
+        float,
+        typer.Option(
+            min=0.1, max=86400.0, metavar="S", help="Longest time without servo outputs [s]."
+        ),
+    ] = 60.0,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Output folder [default: out/VESSEL/sitl-TIME].",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Let ArduPilot's software in the loop (SITL) control a vessel in lock step; record the run.
+
+    ArduPilot runs in another process, such as sim_vehicle.py -v Rover --model JSON:127.0.0.1. With
+    --instances K boats 0 to K-1 are simulated at the same time.
+    """
+    from boatsim.cli.sitl import SitlOptions, run_under_autopilots
+    from boatsim.sitl.surroundings import Surroundings, parse_numbers
+
+    surroundings = Surroundings(
+        parse_numbers("--wind", wind, ("SPEED", "FROM")),
+        parse_numbers("--waves", waves, ("HEIGHT", "PERIOD", "FROM")),
+        parse_numbers("--current", current, ("SPEED", "TOWARD")),
+    )
+    with trusted_content(content, trust, [vessel, scenario]):
+        options = SitlOptions(
+            vessel=vessel,
+            scenario=scenario,
+            load=tuple(_split_loads(load)),
+            surroundings=surroundings,
+            servos=tuple(servo or ()),
+            servo_file=servo_file,
+            seconds=seconds,
+            seed=seed,
+            address=address,
+            port=port,
+            wait=wait,
+            out=out,
+        )
+        return run_under_autopilots(options, instance, instances)
 
 
 @app.command()

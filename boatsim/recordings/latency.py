@@ -61,7 +61,9 @@ def shifted_columns(
             held[name] = samples
     moved = [samples for name, samples in measured.items() if latency.get(name)]
     rows, near = _rows(t, moved)
-    rows = _common_rows(rows, [*measured.values(), *held.values()], near)
+    # another column with empty rows may end early, as where the hull leaves the view of a camera
+    motion = [samples for name, samples in measured.items() if name in (*POSE, *RATES)]
+    rows = _common_rows(rows, [*moved, *motion, *held.values()], near)
     shifted: dict[str, Array] = {}
     for name in signals:
         if name in held:

@@ -160,8 +160,10 @@ class Simulation:
         self._frames += self._camera.take_frames(
             before, self._loop.state, self._loop.commands_in_force()
         )
+        held = self._loop.sent
         self._loop.control_if_due()
-        if self._log.is_due() or self._is_finished():
+        changed = self._options.log_changes and self._loop.sent != held
+        if changed or self._log.is_due() or self._is_finished():
             self._write_row()
         self._deliver_rows()
 

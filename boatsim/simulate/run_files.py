@@ -54,8 +54,8 @@ class Steering(Protocol):
     """Interface of objects that steer a run in place of its scenario's goals, as a driver does."""
 
     @property
-    def pace(self) -> Pace:
-        """Object that slows the run down to a clock."""
+    def pace(self) -> Pace | None:
+        """Object that slows the run down to a clock; None for none."""
 
     @property
     def refresh(self) -> float:

@@ -28,6 +28,7 @@ class RunOptions:
             log is in memory.
         pace: Holds the run back to the pace of a clock; None: as fast as possible.
         refresh: Wall time between two deliveries to the listeners [s].
+        log_changes: Whether the log also gets a row at each change of the commands.
         goal_source: Goals by time [s] in place of the scenario's.
         finish: Called after every step; True ends the run as complete.
         stop: Called before every step; True interrupts the run, which then is incomplete.
@@ -40,6 +41,7 @@ class RunOptions:
     folder: Path | None = None
     pace: Pace | None = None
     refresh: float = REFRESH
+    log_changes: bool = False
     goal_source: GoalSource | None = None
     finish: Callable[[], bool] = bool
     stop: Callable[[], bool] = bool

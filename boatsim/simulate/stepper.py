@@ -16,7 +16,7 @@ from boatsim.physics.commands import clip_to_channel_ranges, input_vector, satur
 from boatsim.physics.debugging import python_function
 from boatsim.physics.native.calls import partial_call
 from boatsim.physics.program import Program
-from boatsim.physics.signals import Array, Wrench
+from boatsim.physics.signals import AXES, Array, Wrench
 from boatsim.physics.vessel import Vessel
 
 
@@ -231,6 +231,13 @@ class Stepper(ABC):
     def state(self) -> State:
         """Present state of the vessel: time, pose and velocities."""
         return State(self.t, *self.program.pose_and_velocities(self._joint_state().tolist()))
+
+    def velocity_over_ground(self) -> tuple[float, float, float]:
+        """Return the velocity of the vessel's origin over ground: north, east and down [m/s]."""
+        rates = [0.0] * len(AXES)
+        for place, rate in zip(self.code.FREE, self._joint_state()[self.code.NQ :], strict=True):
+            rates[place] = float(rate)
+        return rates[0], rates[1], rates[2]
 
     @property
     def actuators(self) -> dict[str, float]:

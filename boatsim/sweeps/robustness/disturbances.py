@@ -15,6 +15,7 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.physics.effects.fan_wind import AIR_DENSITY
+from boatsim.physics.estimate.wind_areas import frontal_drag_area, lateral_drag_area
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
@@ -219,23 +220,18 @@ class WindDisturbance(Disturbance):
     words = "steady wind from a random direction"
     ladder = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0)
     froude_exponent = 0.5
-    # Areas of a small craft: height above the water in beams, and drag coefficients across and
-    # along (Fossen 2021, section 10.1, after Blendermann 1994: speed boat)
-    height: ClassVar[float] = 0.35
-    across: ClassVar[float] = 0.9
-    along: ClassVar[float] = 0.55
 
     def add_effects(self, vessel: Vessel) -> Vessel:
         """Add a calm wind."""
-        end_on = self.along * vessel.beam / (self.across * vessel.length)
+        end_on = frontal_drag_area(vessel.beam) / lateral_drag_area(vessel.length, vessel.beam)
         table = {"use": "wind", "name": f"{PREFIX}wind", "end_on": end_on}
         return vessel.with_effect(table)
 
     def changes(self, boats: DrawnBoats, value: float) -> Changes:
         """Return force [N], direction [rad] and lever [m] of the wind."""
         vessel = boats.vessel
-        area = vessel.length * self.height * vessel.beam
-        force = 0.5 * AIR_DENSITY * self.across * area * value**2
+        area = lateral_drag_area(vessel.length, vessel.beam)
+        force = 0.5 * AIR_DENSITY * area * value**2
         return {
             f"{PREFIX}wind.force": np.full(len(boats), force),
             f"{PREFIX}wind.toward": boats.directions,
