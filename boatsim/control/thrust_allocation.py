@@ -19,7 +19,7 @@ import numpy as np
 
 from boatsim.control.base import clip, wrap
 from boatsim.control.quadratic_program import solve_quadratic_program
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import compiled
 
@@ -399,6 +399,7 @@ class ThrustAllocator:
         thrusters: Sequence[Thruster],
         priorities: tuple[float, float, float] = (1.0, 1.0, 1.0),
         singularity: float = 0.0,
+        calm: float = 0.0,
     ) -> None:
         """Prepare the allocation to a set of thrusters.
 
@@ -407,8 +408,11 @@ class ThrustAllocator:
             priorities: Weights of a missing surge force, sway force and yaw moment, which count if
                 the demand is not attainable.
             singularity: Cost of a singular configuration, in which the directions of the thrusters
-                leave an axis without force. It keeps directions apart while rates limit the turns;
-                0.001 to 0.1 is usual, 0 for none.
+                leave an axis without force. It keeps directions apart in steps; 0.1 to 10 is
+                usual, 0 for none. 1 equals that of directions 1 rad from the optimal ones.
+            calm: Share of its largest thrust below which a thruster turns towards the optimal
+                direction in proportion to its thrust. It keeps thrusters that are nearly idle from
+                turning to and fro; 0 for none.
 
         Raises:
             BadInput: There is no thruster, or a weight is not positive.
@@ -420,7 +424,10 @@ class ThrustAllocator:
         if not singularity >= 0.0:
             raise BadInput(f"singularity = {singularity:g}; allowed is 0 or more")
         self.thrusters = tuple(thrusters)
+        if not calm >= 0.0:
+            raise BadInput(f"calm = {calm:g}; allowed is 0 or more")
         self.singularity = singularity
+        self.calm = calm
         forces, levers = [], []
         for one in self.thrusters:
             X, Y, N = one.column
@@ -475,22 +482,6 @@ class ThrustAllocator:
         self._setting = setting or self.neutral_setting()
         self._chosen = None
 
-    def without(self, name: str) -> "ThrustAllocator":
-        """Return an allocator without one of the thrusters.
-
-        Args:
-            name: Name of the thruster that is lost.
-
-        Raises:
-            BadInput: There is no such thruster, or no other one.
-        """
-        names = [one.name for one in self.thrusters]
-        if name not in names:
-            raise BadInput(f"thruster {name!r} does not exist (there are: {', '.join(names)})")
-        rest = [one for one in self.thrusters if one.name != name]
-        priorities = tuple((self._importance**2).tolist())
-        return ThrustAllocator(rest, priorities, self.singularity)
-
     def force(self, setting: Setting) -> Array:
         """Return force X, Y [N] and moment N [N m] (3,) that the thrusters give at a setting.
 
@@ -541,10 +532,13 @@ class ThrustAllocator:
             elif one.turns:
                 angle_low[i] = max(angle_low[i], one.angle_low)
                 angle_high[i] = min(angle_high[i], one.angle_high)
+        if self.calm > 0.0:
+            share = np.abs(target.setting.thrust) / (self.calm * self._largest)
+            aim = now.angle + np.minimum(share, 1.0) * (aim - now.angle)
         thrust = np.clip(target.setting.thrust, low, high)
         angle = np.where(self._turns, np.clip(aim, angle_low, angle_high), 0.0)
         reached = np.array_equal(thrust, target.setting.thrust) and np.array_equal(angle, aim)
-        if not reached or self.singularity > 0.0:
+        if self.calm > 0.0 or not reached or self.singularity > 0.0:
             for _ in range(REPEATS):
                 thrust, angle = self._linearised_step(
                     np.asarray(demand, float),
@@ -626,7 +620,7 @@ class ThrustAllocator:
         hessian = 2.0 * DEMAND * jacobian.T @ jacobian + 2.0 * np.diag(cost)
         gradient = -2.0 * DEMAND * jacobian.T @ missing - 2.0 * cost * offset
         if self.singularity > 0.0:
-            gradient[n:] += DEMAND * self.singularity * self._singularity_slopes(near, turning)
+            gradient[n:] += APPROACH * self.singularity * self._singularity_slopes(near, turning)
         low = [(thrusts[0] - near.thrust) / self._largest, (angles[0] - near.angle)[turning]]
         high = [(thrusts[1] - near.thrust) / self._largest, (angles[1] - near.angle)[turning]]
         lowest, highest = np.concatenate(low), np.concatenate(high)
@@ -693,5 +687,5 @@ def with_weights(thrusters: Sequence[Thruster], weights: dict[str, float]) -> li
     names = [one.name for one in thrusters]
     for name in weights:
         if name not in names:
-            raise BadInput(f"thruster {name!r} does not exist (there are: {', '.join(names)})")
+            raise BadInput(unknown_name_message("thruster", name, names))
     return [replace(one, weight=weights.get(one.name, one.weight)) for one in thrusters]
