@@ -47,7 +47,7 @@ class Dp(ModelBasedController):
     """
 
     words: ClassVar[str] = (
-        "dynamic positioning: holds position and heading, follows a path at low speed, any thrusters"
+        "dynamic positioning: holds position and heading or follows a path, with any thrusters"
     )
     goals: ClassVar[tuple[str, ...]] = (*GOALS, "speed_mps")
 

@@ -44,7 +44,16 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
     "Start here": ("demo",),
-    "Simulate": ("run", "drive", "sweep", "test", "manoeuvre", "margins", "robustness", "capability"),
+    "Simulate": (
+        "run",
+        "drive",
+        "sweep",
+        "test",
+        "manoeuvre",
+        "margins",
+        "robustness",
+        "capability",
+    ),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
@@ -761,9 +770,7 @@ def capability_(
     ] = 0.0,
     share: Annotated[
         float,
-        typer.Option(
-            min=0.01, max=1.0, metavar="S", help="Share of the thrust that may be used."
-        ),
+        typer.Option(min=0.01, max=1.0, metavar="S", help="Share of the thrust that may be used."),
     ] = 1.0,
     directions: Annotated[
         int, typer.Option(min=4, max=360, metavar="N", help="Number of directions of the wind.")

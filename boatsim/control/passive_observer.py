@@ -8,6 +8,7 @@ full-scale experiments with a supply vessel, Automatica 35, 1999.
 """
 
 from math import ceil, cos, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,16 +34,22 @@ LARGEST_PHASE = 0.2
 SIZE = 15  # xi (6), eta (3), bias (3), nu (3)
 
 
+class ObserverDesign(NamedTuple):
+    """Numbers of the model of a passive observer, and its gains."""
+
+    inverse_mass: Array  # (3, 3)
+    damping: Array  # (3, 3)
+    frequency: float  # [rad/s] of the waves
+    gains: Array  # (5, 3): K1 upper half, K1 lower half, K2, K3 and K4
+    bias_time: float  # [s] time constant of the bias force
+
+
 @compiled
 def observer_rates(
     state: Array,
     measured: Array,
     force: Array,
-    inverse_mass: Array,
-    damping: Array,
-    frequency: Array,
-    gains: Array,
-    bias_time: float,
+    design: ObserverDesign,
 ) -> Array:
     """Return the time derivative of the state of a passive observer (15,).
 
@@ -51,24 +58,21 @@ def observer_rates(
             in earth axes (3,) and velocity u, v [m/s], r [rad/s] (3,).
         measured: Measured x, y [m] and heading [rad] (3,).
         force: Force and moment of thrusters and wind in body axes (3,).
-        inverse_mass: Inverse of the mass matrix (3, 3).
-        damping: Linear damping (3, 3).
-        frequency: Wave frequencies (3,) [rad/s].
-        gains: K1 upper, K1 lower, K2, K3 and K4 (5, 3).
-        bias_time: Time constant of the bias force [s].
+        design: Numbers of the model and gains.
     """
     rates = np.zeros(15)
+    gains = design.gains
     error = measured - state[6:9] - state[3:6]
     error[2] = (error[2] + pi) % (2.0 * pi) - pi
     c, s = cos(measured[2]), sin(measured[2])
     u, v, r = state[12], state[13], state[14]
     for i in range(3):
-        w = frequency[i]
+        w = design.frequency
         rates[i] = state[3 + i] + gains[0, i] * error[i]
         rates[3 + i] = (
             -w * w * state[i] - 2.0 * WAVE_DAMPING * w * state[3 + i] + gains[1, i] * error[i]
         )
-        rates[9 + i] = -state[9 + i] / bias_time + gains[3, i] * error[i]
+        rates[9 + i] = -state[9 + i] / design.bias_time + gains[3, i] * error[i]
     rates[6] = c * u - s * v + gains[2, 0] * error[0]
     rates[7] = s * u + c * v + gains[2, 1] * error[1]
     rates[8] = r + gains[2, 2] * error[2]
@@ -81,10 +85,10 @@ def observer_rates(
     total[2] = force[2] + state[11] + gains[4, 2] * error[2]
     for i in range(3):
         for j in range(3):
-            total[i] -= damping[i, j] * state[12 + j]
+            total[i] -= design.damping[i, j] * state[12 + j]
     for i in range(3):
         for j in range(3):
-            rates[12 + i] += inverse_mass[i, j] * total[j]
+            rates[12 + i] += design.inverse_mass[i, j] * total[j]
     return rates
 
 
@@ -93,11 +97,7 @@ def advance_observer(
     state: Array,
     measured: Array,
     force: Array,
-    inverse_mass: Array,
-    damping: Array,
-    frequency: Array,
-    gains: Array,
-    bias_time: float,
+    design: ObserverDesign,
     period: float,
     parts: int,
 ) -> Array:
@@ -109,29 +109,17 @@ def advance_observer(
         state: State at the begin (15,).
         measured: Measured x, y [m] and heading [rad] (3,).
         force: Force and moment (3,).
-        inverse_mass: Inverse of the mass matrix (3, 3).
-        damping: Linear damping (3, 3).
-        frequency: Wave frequencies (3,) [rad/s].
-        gains: Gains (5, 3).
-        bias_time: Time constant of the bias force [s].
+        design: Numbers of the model and gains.
         period: Length of the period [s].
         parts: Number of steps.
     """
     h = period / parts
     y = state.copy()
     for _ in range(parts):
-        k1 = observer_rates(
-            y, measured, force, inverse_mass, damping, frequency, gains, bias_time
-        )
-        k2 = observer_rates(
-            y + 0.5 * h * k1, measured, force, inverse_mass, damping, frequency, gains, bias_time
-        )
-        k3 = observer_rates(
-            y + 0.5 * h * k2, measured, force, inverse_mass, damping, frequency, gains, bias_time
-        )
-        k4 = observer_rates(
-            y + h * k3, measured, force, inverse_mass, damping, frequency, gains, bias_time
-        )
+        k1 = observer_rates(y, measured, force, design)
+        k2 = observer_rates(y + 0.5 * h * k1, measured, force, design)
+        k3 = observer_rates(y + 0.5 * h * k2, measured, force, design)
+        k4 = observer_rates(y + h * k3, measured, force, design)
         y += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
     return y
 
@@ -140,6 +128,7 @@ class PassiveObserver:
     """Estimates position, velocity and bias force of a vessel without the motion in waves.
 
     Attributes:
+        design: Numbers of the model and gains.
         state: Wave states (6,), position and heading (3,), bias force in earth axes (3,), velocity
             (3,).
     """
@@ -165,24 +154,22 @@ class PassiveObserver:
                 f"passive observer: frequency {frequency:g} rad/s, period {period:g} s; allowed "
                 "are numbers above 0"
             )
-        self._inverse_mass = np.ascontiguousarray(np.linalg.inv(mass))
-        self._damping = np.ascontiguousarray(damping)
-        self._frequency = np.full(3, frequency)
         self._period = period
         self._parts = ceil(frequency * period / LARGEST_PHASE)
-        self._bias_time = BIAS_MEMORY / frequency
         cutoff = CUTOFF_SHARE * frequency
         width = NOTCH_DAMPING - WAVE_DAMPING if filters else 0.0
         velocity = VELOCITY_SHARE * frequency**2 * np.diag(mass)
-        self._gains = np.array(
-            [
-                np.full(3, -2.0 * width * cutoff / frequency),
-                np.full(3, 2.0 * width * frequency),
-                np.full(3, cutoff),
-                BIAS_SHARE * frequency * velocity,
-                velocity,
-            ]
-        )
+        gains = [
+            np.full(3, -2.0 * width * cutoff / frequency),
+            np.full(3, 2.0 * width * frequency),
+            np.full(3, cutoff),
+            BIAS_SHARE * frequency * velocity,
+            velocity,
+        ]
+        inverse = np.ascontiguousarray(np.linalg.inv(mass))
+        drag = np.ascontiguousarray(damping)
+        time = BIAS_MEMORY / frequency
+        self.design = ObserverDesign(inverse, drag, frequency, np.array(gains), time)
         self.state = np.zeros(SIZE)
 
     def reset(self, position: Array) -> None:
@@ -203,16 +190,7 @@ class PassiveObserver:
                 period.
         """
         self.state = advance_observer(
-            self.state,
-            measured,
-            force,
-            self._inverse_mass,
-            self._damping,
-            self._frequency,
-            self._gains,
-            self._bias_time,
-            self._period,
-            self._parts,
+            self.state, measured, force, self.design, self._period, self._parts
         )
 
     @property

@@ -16,6 +16,7 @@ from math import atan, atan2, ceil, cos, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.control.base import clip, wrap
 from boatsim.control.quadratic_program import solve_quadratic_program
@@ -521,8 +522,9 @@ class ThrustAllocator:
         target = self.optimum(demand)
         now = self._setting
         room, turn = self._rate * period, self._angle_rate * period
-        low, high = np.maximum(self._low, now.thrust - room), np.minimum(
-            self._high, now.thrust + room
+        low, high = (
+            np.maximum(self._low, now.thrust - room),
+            np.minimum(self._high, now.thrust + room),
         )
         angle_low, angle_high = now.angle - turn, now.angle + turn
         aim = target.setting.angle.copy()
@@ -565,7 +567,7 @@ class ThrustAllocator:
             weight = one.weight
             if sector is None:
                 columns.append(one.largest * np.array(one.column))
-                rows.append((0.0, one.low / one.largest, one.high / one.largest, 0, 0, weight))
+                rows.append((0.0, one.low / one.largest, one.high / one.largest, 0.0, 0.0, weight))
                 continue
             for kind, angle in ((1.0, 0.0), (2.0, 0.5 * pi)):
                 columns.append(one.largest * np.array(one.effect(angle)))
@@ -651,7 +653,7 @@ class ThrustAllocator:
         share = float(np.linalg.det(effects @ effects.T))
         return NEAR_SINGULAR / (NEAR_SINGULAR + max(share, 0.0))
 
-    def _singularity_slopes(self, near: Setting, turning: Array) -> Array:
+    def _singularity_slopes(self, near: Setting, turning: NDArray[np.int64]) -> Array:
         """Derivative of the cost of a singular configuration by the directions of `turning`."""
         slopes = []
         for i in turning.tolist():
@@ -665,7 +667,7 @@ class ThrustAllocator:
 
 
 def _direction(one: Thruster, sector: Sector, angle: float) -> float:
-    """Direction of a thruster whose thrust vector has an angle, within the range of the thruster."""
+    """Direction of a thruster for the angle of its thrust vector, within its range."""
     if one.turns_all_round:
         return angle
     middle = 0.5 * (one.angle_low + one.angle_high)

@@ -23,8 +23,9 @@ class StationKeeping(MetricSet):
 
     Rows from the time `since` on are evaluated. Errors are those against the controller's logged
     reference, `reference_x_m` and so on, or else against its goals. Thrusters are the columns
-    `thrusters` and `azimuths`, by default all actuators in N and in rad; the work is described by the mean of the sum of their
-    magnitudes, the mean rate of its changes, and the angle that azimuth thrusters turn.
+    `thrusters` and `azimuths`, by default all actuators in N and in rad. Their work is described by
+    the mean of the sum of the magnitudes, the mean rate of changes, and the angle that azimuth
+    thrusters turn.
     """
 
     words: ClassVar[str] = "errors of position and heading, thrust and its changes"
@@ -74,9 +75,7 @@ class StationKeeping(MetricSet):
             found["thrust_rate"] = sum(map(_travel, thrusts)) / span
         turned = [log[name][rows] for name in self._columns(log, self.azimuths, "rad")]
         if turned:
-            found["azimuth_rate"] = (
-                degrees(sum(map(_travel, turned))) / span * SECONDS_PER_MINUTE
-            )
+            found["azimuth_rate"] = degrees(sum(map(_travel, turned))) / span * SECONDS_PER_MINUTE
         return found
 
     def _columns(self, log: Recording, given: Sequence[str], unit: str) -> list[str]:

@@ -25,6 +25,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.physics.vessel.bindings import FULL_TURN
 
 PLANE = [AXES.index(name) for name in ("surge", "sway", "yaw")]
+WIND_KEYS = ("front", "side", "arm", "swing")
 # Froude number at which the damping is linearised: 0.6 m/s for a ship of 80 m, 0.1 m/s for a boat
 # of 2 m, the speeds of currents and of the motion while a position is held.
 LOW_SPEED = 0.02
@@ -75,8 +76,8 @@ def wind_loads(vessel: Vessel) -> WindLoads | None:
     """
     for effect in vessel.effects:
         if has_wind_coefficients(effect):
-            given = [getattr(effect, name, 0.0) for name in ("front", "side", "arm", "swing")]
-            return WindLoads(*given, density=getattr(effect, "density", AIR_DENSITY))
+            front, side, arm, swing = (getattr(effect, name, 0.0) for name in WIND_KEYS)
+            return WindLoads(front, side, arm, swing, getattr(effect, "density", AIR_DENSITY))
     return None
 
 
@@ -111,8 +112,9 @@ def hull_force(
     m = make_motion(u=ahead, v=starboard, r=turning)
     total = np.zeros(3)
     for effect in vessel.effects:
-        plain = isinstance(effect, Force) and not type(effect).roles and not effect.per_instance_of
-        if not plain or type(effect).of_air or type(effect).tied_to:
+        if not isinstance(effect, Force) or type(effect).roles or effect.per_instance_of:
+            continue
+        if type(effect).of_air or type(effect).tied_to:
             continue
         if getattr(effect, "significant_height", 0.0):
             continue

@@ -24,9 +24,7 @@ class Anemometer(Sensor):
     columns: ClassVar = {"wind_mps": "wind_mps", "wind_from_rad": "wind_from_rad"}
 
     speed_sd: float = param(0.3, low=0.0, high=10.0, unit="m/s", words="noise of the speed")
-    direction_sd: float = param(
-        0.05, low=0.0, high=1.0, unit="rad", words="noise of the direction"
-    )
+    direction_sd: float = param(0.05, low=0.0, high=1.0, unit="rad", words="noise of the direction")
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """Return speed of the apparent wind and where it comes from, clockwise from the bow."""
