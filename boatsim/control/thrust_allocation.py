@@ -41,6 +41,9 @@ HYSTERESIS = 0.1
 MOST_SECTORS = 256  # combinations of sectors that are compared in one call
 FULL_TURN = 2.0 * pi
 NEAR_SINGULAR = 1e-3  # relative determinant below which the cost of a singularity is level
+# [rad] by which neighbours are turned apart where the derivative is taken: it is zero if all of them
+# point exactly alike, a saddle that would hold them
+APART = 0.05
 ANGLE_STEP = 1e-4  # [rad] over which the derivative of the determinant is taken
 REPEATS = 3  # linearisations of a step; the third one changes a thrust by less than 1e-4 of full
 
@@ -656,10 +659,12 @@ class ThrustAllocator:
     def _singularity_slopes(self, near: Setting, turning: NDArray[np.int64]) -> Array:
         """Derivative of the cost of a singular configuration by the directions of `turning`."""
         slopes = []
+        apart = near.angle.copy()
+        apart[turning] += APART * (-1.0) ** np.arange(len(turning))
         for i in turning.tolist():
             costs = []
             for step in (ANGLE_STEP, -ANGLE_STEP):
-                angle = near.angle.copy()
+                angle = apart.copy()
                 angle[i] += step
                 costs.append(self.singularity_cost(angle))
             slopes.append((costs[0] - costs[1]) / (2.0 * ANGLE_STEP))

@@ -94,7 +94,8 @@ class GustyWind(Force):
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= \tfrac{1}{2} \rho \, U A_x a, \quad Y = \tfrac{1}{2} \rho "
         r"\, U A_y b, \quad N = \left(l + l_1 \frac{a}{U}\right) Y, \quad "
-        r"U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma - \psi) - u, \quad b = V(t) \sin(\gamma - \psi) - v \\ V(t) &= V_{10} "
+        r"U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma - \psi) - u, \quad b = V(t) "
+        r"\sin(\gamma - \psi) - v \\ V(t) &= V_{10} "
         r"\left(\frac{h}{10}\right)^{1/7} + \sum_i \sqrt{2 S(f_i) \Delta f_i} \cos(2 \pi f_i t + "
         r"\epsilon_i) \end{aligned}"
     )
