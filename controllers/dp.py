@@ -25,6 +25,9 @@ INTEGRAL_SHARE = 0.1
 # of its largest thrust: below it an azimuth thruster turns slowly, as its direction matters little.
 # With 0.1 the thrusters of the vessel `osv` turn a third as much at a station.
 CALM = 0.1
+# of full thrust: a smaller difference between demanded and given force is that of the allocation
+# and no saturation. The integral action must not react to it, or a mean error would remain.
+TOLERATED = 0.01
 LOW_SPEED = 0.02  # Froude number of the default speed: 0.6 m/s for a ship of 80 m
 GOALS = ("x_m", "y_m", "psi_rad")
 AXES = ("X_N", "Y_N", "N_Nm")
@@ -222,7 +225,9 @@ class Dp(ModelBasedController):
         self._given = self._allocator.step(demand, self.period).force
         if self.integral:
             # what the thrusters do not give lets the integral follow (back-calculation)
-            excess = self._bandwidth * (self._given - demand)
+            missing = self._given - demand
+            room = TOLERATED * self._allocator.scale
+            excess = self._bandwidth * (missing - np.clip(missing, -room, room))
             self._slow_force += self.period * (turn @ (self._integral_gain * off - excess))
 
     def estimates(self) -> dict[str, Estimate]:

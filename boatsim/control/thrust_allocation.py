@@ -41,8 +41,8 @@ HYSTERESIS = 0.1
 MOST_SECTORS = 256  # combinations of sectors that are compared in one call
 FULL_TURN = 2.0 * pi
 NEAR_SINGULAR = 1e-3  # relative determinant below which the cost of a singularity is level
-# [rad] by which neighbours are turned apart where the derivative is taken: it is zero if all of them
-# point exactly alike, a saddle that would hold them
+# [rad] by which neighbours are turned apart where the derivative is taken: it is zero if all of
+# them point exactly alike, a saddle that would hold them
 APART = 0.05
 ANGLE_STEP = 1e-4  # [rad] over which the derivative of the determinant is taken
 REPEATS = 3  # linearisations of a step; the third one changes a thrust by less than 1e-4 of full
@@ -412,8 +412,8 @@ class ThrustAllocator:
             priorities: Weights of a missing surge force, sway force and yaw moment, which count if
                 the demand is not attainable.
             singularity: Cost of a singular configuration, in which the directions of the thrusters
-                leave an axis without force. It keeps directions apart in steps; 0.1 to 10 is
-                usual, 0 for none. 1 equals that of directions 1 rad from the optimal ones.
+                leave an axis without force; with less than three thrusters all are singular. It
+                keeps directions apart in steps; 0.1 to 10 is usual, 0 for none. 1 equals that of directions 1 rad from the optimal ones.
             calm: Share of its largest thrust below which a thruster turns towards the optimal
                 direction in proportion to its thrust. It keeps thrusters that are nearly idle from
                 turning to and fro; 0 for none.
