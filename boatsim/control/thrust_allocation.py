@@ -413,7 +413,8 @@ class ThrustAllocator:
                 the demand is not attainable.
             singularity: Cost of a singular configuration, in which the directions of the thrusters
                 leave an axis without force; with less than three thrusters all are singular. It
-                keeps directions apart in steps; 0.1 to 10 is usual, 0 for none. 1 equals that of directions 1 rad from the optimal ones.
+                keeps directions apart in steps; 0.1 to 10 is usual, 0 for none. 1 equals that of
+                directions 1 rad from the optimal ones.
             calm: Share of its largest thrust below which a thruster turns towards the optimal
                 direction in proportion to its thrust. It keeps thrusters that are nearly idle from
                 turning to and fro; 0 for none.
