@@ -21,6 +21,20 @@ SOLVED, INFEASIBLE, NOT_CONVERGED = 0, 1, 2
 
 
 @compiled
+def dot(a: Array, b: Array) -> float:
+    """Return the scalar product of two vectors; a loop compiles faster than operations on arrays.
+
+    Args:
+        a: Vector (n,).
+        b: Vector (n,).
+    """
+    total = 0.0
+    for k in range(len(a)):
+        total += a[k] * b[k]
+    return total
+
+
+@compiled
 def cholesky(matrix: Array) -> Array:
     """Return the lower Cholesky factor (n, n) of a positive definite matrix.
 
@@ -111,7 +125,9 @@ def split_normal(active: Array, count: int, normal: Array) -> tuple[Array, Array
         upper[j, j] = sqrt(length)
         for k in range(n):
             basis[j, k] /= upper[j, j]
-    rest = normal.copy()
+    rest = np.zeros(n)
+    for k in range(n):
+        rest[k] = normal[k]
     shares = np.zeros(count)
     for _ in range(2):
         for i in range(count):
@@ -150,10 +166,14 @@ def solve_quadratic_program(
     n, m = len(gradient), len(bounds)
     factor = cholesky(hessian)
     # in y = L' x the Hessian is the identity
-    y = -forward_substitution(factor, gradient)
+    y = forward_substitution(factor, gradient)
+    for k in range(n):
+        y[k] = -y[k]
     normals = np.zeros((m, n))
     for i in range(m):
-        normals[i] = forward_substitution(factor, rows[i])
+        right = forward_substitution(factor, rows[i])
+        for k in range(n):
+            normals[i, k] = right[k]
     active = np.zeros((n + 1, n))
     members = np.zeros(n + 1, dtype=np.int64)
     multipliers = np.zeros(n + 1)
@@ -171,19 +191,21 @@ def solve_quadratic_program(
         if at < 0:
             status = SOLVED
             break
-        normal = -normals[at]  # into the feasible side
-        length = sqrt(np.sum(normal * normal))
+        normal = np.zeros(n)  # into the feasible side
+        for k in range(n):
+            normal[k] = -normals[at, k]
+        length = sqrt(dot(normal, normal))
         own = 0.0  # multiplier of the new constraint
         added = False
         while not added:
             shares, direction = split_normal(active, count, normal)
-            slope = np.sum(direction * normal)
+            slope = dot(direction, normal)
             dual, drop = np.inf, -1
             for j in range(count):
                 if shares[j] > 0.0 and multipliers[j] < dual * shares[j]:
                     dual, drop = multipliers[j] / shares[j], j
-            if sqrt(np.sum(direction * direction)) > DEPENDENT * length:
-                missing = bounds[at] + np.sum(normal * y)
+            if sqrt(dot(direction, direction)) > DEPENDENT * length:
+                missing = bounds[at] + dot(normal, y)
                 primal = max(-missing, 0.0) / slope
             else:
                 primal = np.inf
@@ -191,19 +213,23 @@ def solve_quadratic_program(
             if step == np.inf:
                 return back_substitution(factor, y), INFEASIBLE
             if primal < np.inf:
-                y += step * direction
+                for k in range(n):
+                    y[k] += step * direction[k]
             for j in range(count):
                 multipliers[j] -= step * shares[j]
             own += step
             if primal <= dual:
-                active[count], members[count], multipliers[count] = normal, at, own
+                for k in range(n):
+                    active[count, k] = normal[k]
+                members[count], multipliers[count] = at, own
                 is_active[at] = True
                 count += 1
                 added = True
             else:
                 is_active[members[drop]] = False
                 for j in range(drop, count - 1):
-                    active[j] = active[j + 1]
+                    for k in range(n):
+                        active[j, k] = active[j + 1, k]
                     members[j], multipliers[j] = members[j + 1], multipliers[j + 1]
                 count -= 1
     return back_substitution(factor, y), status

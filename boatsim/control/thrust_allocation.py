@@ -340,10 +340,13 @@ def solve_static(
         Components (n,) and the cost.
     """
     n = len(weights)
-    hessian = 2.0 * DEMAND * (effects.T @ effects)
+    hessian, gradient = np.zeros((n, n)), np.zeros(n)
     for i in range(n):
-        hessian[i, i] += 2.0 * weights[i]
-    gradient = -2.0 * DEMAND * (effects.T @ demand)
+        hessian[i, i] = 2.0 * weights[i]
+        for axis in range(3):
+            gradient[i] -= 2.0 * DEMAND * effects[axis, i] * demand[axis]
+            for j in range(n):
+                hessian[i, j] += 2.0 * DEMAND * effects[axis, i] * effects[axis, j]
     rows = np.zeros((n * (FEWEST_TANGENTS + 2 + MOST_CUTS), n))
     bounds = np.zeros(len(rows))
     count = 0
@@ -384,8 +387,15 @@ def solve_static(
                 x[i + 1] *= highs[i] / length
         elif kinds[i] == 0.0:
             x[i] = min(max(x[i], lows[i]), highs[i])
-    missing = demand - effects @ x
-    return x, DEMAND * np.sum(missing * missing) + np.sum(weights * x * x)
+    cost = 0.0
+    for axis in range(3):
+        missing = demand[axis]
+        for i in range(n):
+            missing -= effects[axis, i] * x[i]
+        cost += DEMAND * missing * missing
+    for i in range(n):
+        cost += weights[i] * x[i] * x[i]
+    return x, cost
 
 
 class ThrustAllocator:

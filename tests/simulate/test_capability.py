@@ -51,7 +51,7 @@ def test_it_is_the_closed_form_of_a_simple_set_of_thrusters() -> None:
 def test_one_lost_tunnel_thruster_leaves_no_side_force_without_moment() -> None:
     found = capability(barge(), WindLoads(AREA, AREA), directions=4)
     assert found.winds["without bow"][1] < 0.5
-    assert found.winds["without bow"][0] == pytest.approx(found.winds[INTACT][0])
+    assert found.winds["without bow"][0] == pytest.approx(found.winds[INTACT][0], rel=1e-4)
     # a side force at the stern needs no thruster at the bow
     aft = capability(barge(), WindLoads(AREA, AREA, arm=-2.0), directions=4)
     assert aft.winds["without bow"][1] == pytest.approx(sqrt(2.0 * 10.0 / (1.2 * AREA)), rel=1e-3)
