@@ -22,7 +22,8 @@ from benchmarks.arrows import (
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation control.jet "
     "control.identification control.helm control.compiled control.axis control.gradient_adaptation control.joystick "
-    "control.motor_check control.operating_points".split()
+    "control.motor_check control.operating_points control.passive_observer control.quadratic_program "
+    "control.reference_motion control.thrust_allocation control.vessel_model".split()
 )
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "hull_assets", "engine", "env")}

@@ -44,7 +44,17 @@ MOST_SPEED = 1e6  # times real time; a larger value is a mistake
 # Headings of the help text with their commands; a test checks that none is missing
 COMMAND_GROUPS = {
     "Start here": ("demo",),
-    "Simulate": ("run", "drive", "sitl", "sweep", "test", "manoeuvre", "margins", "robustness"),
+    "Simulate": (
+        "run",
+        "drive",
+        "sitl",
+        "sweep",
+        "test",
+        "manoeuvre",
+        "margins",
+        "robustness",
+        "capability",
+    ),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
     "Vessels and content": ("new", "list", "show"),
@@ -865,6 +875,78 @@ def robustness(
             disturbance or [],
             out,
         )
+
+
+@app.command("capability")
+@exits_with_code
+def capability_(
+    vessel: Annotated[
+        str, typer.Argument(metavar="VESSEL", help="Name, folder or file of a vessel.")
+    ],
+    load: Load = None,
+    current: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=5.0, metavar="V", help="Current in the direction of the wind [m/s]."
+        ),
+    ] = 0.0,
+    share: Annotated[
+        float,
+        typer.Option(min=0.01, max=1.0, metavar="S", help="Share of the thrust that may be used."),
+    ] = 1.0,
+    directions: Annotated[
+        int, typer.Option(min=4, max=360, metavar="N", help="Number of directions of the wind.")
+    ] = 36,
+    lost: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Thruster that is lost in a further case. Repeatable [default: each in turn].",
+        ),
+    ] = None,
+    front: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0, max=1e4, metavar="A", help="Frontal drag area [m^2] [default: the vessel's]."
+        ),
+    ] = None,
+    side: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0, max=1e5, metavar="A", help="Lateral drag area [m^2] [default: the vessel's]."
+        ),
+    ] = None,
+    arm: Annotated[
+        float | None,
+        typer.Option(
+            min=-200.0,
+            max=200.0,
+            metavar="L",
+            help="Lever of the side force of --side, ahead of the origin [m] [default: 0].",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Output folder [default: out/VESSEL_capability].",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Plot the largest wind that the thrusters of a vessel hold, by direction and lost thruster.
+
+    It writes capability.svg, a polar plot, and capability.csv.
+    """
+    from boatsim.cli.capability import print_capability
+
+    with trusted_content(content, trust, [vessel]):
+        folder = out or Path("out") / f"{Path(vessel).stem}_capability"
+        areas = (front, side, arm)
+        given = (current, share, directions, lost, folder)
+        return print_capability(vessel, _split_loads(load), areas, *given)
 
 
 @app.command()

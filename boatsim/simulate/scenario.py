@@ -13,6 +13,7 @@ from pydantic import Field, field_validator, model_validator
 
 from boatsim.arguments import check_instance, checked_name
 from boatsim.control.base import Controller
+from boatsim.control.vessel_model import ModelBasedController
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
@@ -26,6 +27,7 @@ from boatsim.simulate.camera_metric import CameraMetricSet
 from boatsim.simulate.cases import ScenarioLocation, read_scenario
 from boatsim.simulate.metric import MetricSet
 from boatsim.simulate.sensing import Sensor, Sensors
+from boatsim.simulate.vessel_model import vessel_model
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, MetricSet, Sensor)
@@ -314,6 +316,8 @@ def from_table(
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
         _check_metrics(file, camera, measure)
+        if isinstance(controller, ModelBasedController):
+            controller.use_vessel_model(vessel_model(vessel))
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
     return Scenario(

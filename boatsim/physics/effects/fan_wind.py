@@ -93,3 +93,11 @@ class FanWind(Force):
         unit="m",
         words="lever of the side force, ahead of the origin",
     )
+
+    def air_velocity(self, t: float) -> tuple[float, float]:
+        """Return the velocity of the air over ground, north and east [m/s].
+
+        Args:
+            t: Time [s]; not used, as the wind is steady.
+        """
+        return self.speed * cos(self.toward), self.speed * sin(self.toward)

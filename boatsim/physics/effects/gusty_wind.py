@@ -79,7 +79,7 @@ def law(m: Any, q: Any) -> Wrench:
     north, east = speed * cos(q.toward), speed * sin(q.toward)
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
-    return air_drag(along, across, AIR_DENSITY, q, 0.0)
+    return air_drag(along, across, AIR_DENSITY, q, q.swing)
 
 
 @dataclass(frozen=True)
@@ -93,8 +93,9 @@ class GustyWind(Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= \tfrac{1}{2} \rho \, U A_x a, \quad Y = \tfrac{1}{2} \rho "
-        r"\, U A_y b, \quad N = l \, Y, \quad U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma "
-        r"- \psi) - u, \quad b = V(t) \sin(\gamma - \psi) - v \\ V(t) &= V_{10} "
+        r"\, U A_y b, \quad N = \left(l + l_1 \frac{a}{U}\right) Y, \quad "
+        r"U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma - \psi) - u, \quad b = V(t) "
+        r"\sin(\gamma - \psi) - v \\ V(t) &= V_{10} "
         r"\left(\frac{h}{10}\right)^{1/7} + \sum_i \sqrt{2 S(f_i) \Delta f_i} \cos(2 \pi f_i t + "
         r"\epsilon_i) \end{aligned}"
     )
@@ -105,6 +106,7 @@ class GustyWind(Force):
         "front": "A_x",
         "side": "A_y",
         "arm": "l",
+        "swing": "l_1",
     }
     words: ClassVar[str] = "a wind with gusts exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "holding a position in the wind"
@@ -137,6 +139,13 @@ class GustyWind(Force):
         unit="m",
         words="lever of the side force, ahead of the origin",
     )
+    swing: float = param(
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="additional lever with the wind from astern",
+    )
     spectrum_code: float = name_code_parameter("code of the spectrum")
 
     def __post_init__(self) -> None:
@@ -148,6 +157,16 @@ class GustyWind(Force):
         super().__post_init__()
         code = index_code(f"{self.name}: spectrum", self.spectrum, SPECTRA)
         object.__setattr__(self, "spectrum_code", code)
+
+    def air_velocity(self, t: float) -> tuple[float, float]:
+        """Return the velocity of the air over ground, north and east [m/s].
+
+        Args:
+            t: Time [s].
+        """
+        values = self.values()
+        speed = mean_speed_at(self.height, self.speed) + gust_speed(t, values)
+        return speed * cos(self.toward), speed * sin(self.toward)
 
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the wind whose random gusts follow from the seed.
