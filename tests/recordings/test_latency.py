@@ -62,3 +62,14 @@ def test_a_wrong_column_and_half_a_fix_are_refused_in_one_line(tmp_path):
         read(written(tmp_path, 0.0, "latency.x_m = 0.5\n"))
     with pytest.raises(BadInput, match="allowed is -60 to 60 s"):
         read(written(tmp_path, 0.0, "latency.psi_rad = 100.0\n"))
+
+
+def test_a_column_that_ends_early_leaves_the_rows_of_the_motion(tmp_path):
+    """Such as the view of a camera that the boat leaves."""
+    path = written(tmp_path, 0.3, "[latency]\nx_m = 0.3\ny_m = 0.3\n")
+    head, *lines = path.read_text().splitlines()
+    seen = [f"{line},{'1.5' if i < 20 else ''}" for i, line in enumerate(lines)]
+    path.write_text("\n".join([f"{head},camera_x_m", *seen]) + "\n")
+    run = read(path)
+    assert len(run) > 390
+    assert np.isfinite(run["camera_x_m"]).sum() == 20
