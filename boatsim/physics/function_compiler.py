@@ -17,6 +17,7 @@ This module and `compiler_internals` are the only ones that rely on undocumented
 """
 
 from collections.abc import Callable, Mapping
+from copy import copy
 from functools import cache
 from typing import Any
 
@@ -24,6 +25,7 @@ from numba import _dynfunc, njit, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
+from numba.core.environment import Environment
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
 from numba.core.typing import Context
@@ -176,18 +178,28 @@ class OuterCompiler:
         """
         self._inner.compile(tuple(args))
         inner = self._inner.overloads[tuple(args)]
-        context, about = inner.target_context, inner.fndesc
+        context, about = inner.target_context, copy(inner.fndesc)
+        # The constants of the wrapper, such as the type of an array that it returns, have a place
+        # of their own: those of the inner form stay as they were when a caller was cached.
+        about.env_name += "Wrapper"
+        constants = Environment.from_fndesc(about)
         library = context.codegen().create_library(about.qualname)
         library.enable_object_caching()
         library.add_linking_library(inner.library)
-        parts = (library, about, inner.environment, inner.call_helper)
+        parts = (library, about, constants, inner.call_helper)
         context.create_cpython_wrapper(*parts, release_gil=self._releases_gil)
         context.create_cfunc_wrapper(*parts)
-        called = context.get_executable(library, about, inner.environment)
+        called = context.get_executable(library, about, constants)
         context.insert_user_function(called, about, [library])
         # numba enters its timings of each form.
         notes = {name: value for name, value in inner.metadata.items() if name != "timers"}
-        return inner._replace(entry_point=called, library=library, metadata=notes)
+        return inner._replace(
+            entry_point=called,
+            library=library,
+            metadata=notes,
+            fndesc=about,
+            environment=constants,
+        )
 
 
 class TwoFormFunction(CPUDispatcher):

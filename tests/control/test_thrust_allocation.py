@@ -1,7 +1,11 @@
 """The allocation to thrusters is optimal and never leaves their limits."""
 
+import os
+import subprocess
+import sys
 from itertools import product
 from math import atan, cos, pi, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -182,3 +186,22 @@ def test_yaw_has_priority_if_its_weight_is_large() -> None:
 def test_wrong_thrusters_are_refused(wrong: object, message: str) -> None:
     with pytest.raises(BadInput, match=message):
         wrong()  # type: ignore[operator]
+
+
+SECOND_USE = """
+import numpy as np
+from tests.control.test_thrust_allocation import supply_vessel
+print(supply_vessel().step(np.array([50.0, 20.0, 900.0]), 0.5).force.tolist())
+"""
+
+
+@pytest.mark.slow  # compiles everything anew
+def test_a_second_process_loads_what_the_first_one_compiled(tmp_path: Path) -> None:
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+    said = []
+    for _ in range(2):
+        command = [sys.executable, "-c", SECOND_USE]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        said.append(done.stdout)
+    assert said[0] == said[1] and said[0].startswith("[")

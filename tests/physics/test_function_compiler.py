@@ -67,7 +67,7 @@ def test_a_function_is_analysed_once_for_python_and_for_its_callers() -> None:
     assert function(np.float64(3.0)) == 6.0
     (inner,) = function.inner.overloads.values()
     (outer,) = function.overloads.values()
-    assert outer.fndesc is inner.fndesc
+    assert outer.type_annotation is inner.type_annotation
 
 
 def test_functions_change_arrays_in_place_in_both_forms() -> None:
