@@ -356,7 +356,8 @@ def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(nam
     made = run(replace(turn, file=turn.file.model_copy(update={"duration": 100.0 * unit})))
     found = {k: norm.value for k, norm in requested_metrics(made).items()}
     assert made.recording["psi_rad"][-1] > pi
-    widest = 25.0 if name == "jet_ski" else 10.0  # [L] eight lengths a second
+    # [L] the jet ski goes eight lengths a second; the supply vessel's damping is that of low speed
+    widest = {"jet_ski": 25.0, "osv": 15.0}.get(name, 10.0)
     assert 0.1 < found["tactical_diameter"] < widest and 0.5 < found["advance"] < widest  # type: ignore[operator]
     assert found["steady_drift"] > 0.0 or name == "catamaran"  # type: ignore[operator]  # whose thruster is at the bow
 
