@@ -206,7 +206,7 @@ def wilson_interval(share_of_trials: float, count: int) -> tuple[float, float]:
     p, n, z = share_of_trials, count, QUANTILE
     middle = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z * sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return middle - half, middle + half
+    return max(middle - half, 0.0), min(middle + half, 1.0)
 
 
 def count(records: Sequence[Record], holds: Callable[[Record], bool]) -> str:
