@@ -12,6 +12,7 @@ import argparse
 import os
 from pathlib import Path
 
+from boatsim.diagnosis.config import DEFAULT
 from validation.calibration import campaign, table, weights
 from validation.calibration.curve import reliability_curve
 from validation.calibration.owner_records import owner_records
@@ -46,10 +47,16 @@ def main() -> None:
         help="with --weights: also folders of validation.owner_logs (boats from particulars)",
     )
     parser.add_argument("--curve", type=Path, help="write the reliability curve to this SVG file")
+    parser.add_argument(
+        "--beside-unknown",
+        type=float,
+        default=DEFAULT.decide.least_probability_beside_unknown,
+        help="probability from which an effect beside an unknown cause is named (default: in use)",
+    )
     args = parser.parse_args()
     if not args.tables:
         campaign.run(args.out, args.seed, args.trials, args.jobs, args.unstated)
-    records = list(campaign.records(args.out))
+    records = list(campaign.records(args.out, args.beside_unknown))
     table.print_tables(records)
     if args.weights:
         for folder in args.owners:

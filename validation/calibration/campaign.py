@@ -133,28 +133,31 @@ def record_file(out: Path, job: Job) -> Path:
     return out / f"{job.name}.json"
 
 
-def records(out: Path) -> Iterator[Record]:
+def records(
+    out: Path, beside_unknown: float = DEFAULT.decide.least_probability_beside_unknown
+) -> Iterator[Record]:
     """Yield the recorded diagnoses of a folder in order of their names.
 
-    The limit of a probability that names an effect beside an unknown cause is the one in use, so
-    that it may be changed without a new campaign.
+    Args:
+        out: The folder.
+        beside_unknown: Probability from which an effect beside an unknown cause is named. Records
+            are divided by it again, so that another limit needs no new campaign.
     """
     for file in sorted(out.glob("[SU]*_T*.json")):
-        yield from map(with_limit_in_use, json.loads(file.read_text()))
+        for found in json.loads(file.read_text()):
+            yield with_limit(found, beside_unknown)
 
 
-def with_limit_in_use(record: Record) -> Record:
-    """Return a record whose names beside an unknown cause are as probable as they must be now."""
+def with_limit(record: Record, beside_unknown: float) -> Record:
+    """Return a record whose names beside an unknown cause have at least a given probability."""
     signs = record["signs"]
     if not record["unknown"]["flag"] or signs["log"].get("estimated"):
         return record
-    probable = set()
-    for one in signs["effects"]:
-        if one["probability"] >= DEFAULT.decide.least_probability_beside_unknown:
-            probable.add(one["name"])
+    probability = {one["name"]: one["probability"] for one in signs["effects"]}
     named, possible = [], [*record["also_possible"]]
     for effect in record["effects"]:
-        (named if effect["name"] in probable else possible).append(effect)
+        is_probable = probability[effect["name"]] >= beside_unknown
+        (named if is_probable else possible).append(effect)
     return {**record, "effects": named, "also_possible": possible}
 
 

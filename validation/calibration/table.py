@@ -8,6 +8,7 @@ from typing import Any
 
 BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0)
 SURE = 0.99  # probability from which a statement is called sure
+WEAK = 0.7  # probability below which a name is improbable: the limit beside an unknown cause
 QUANTILE = 1.96  # two-sided 95 % of a normal distribution
 
 Record = dict[str, Any]
@@ -111,6 +112,8 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
         "known cause beside an unknown one, named": count(mixed, names_a_cause),
         "known cause beside an unknown one, flagged": count(mixed, flagged),
         "known cause beside an unknown one, a wrong name": count(mixed, wrong),
+        "names below 0.7 beside an unknown cause, right": share(_weak(records, unknown=True)),
+        "names below 0.7 otherwise, right": share(_weak(records, unknown=False)),
         "logs whose recalibrated model is worse than the file": count(records, harmed),
     }
 
@@ -118,6 +121,16 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
 def _sure(stated: Sequence[Statement]) -> list[bool]:
     """Whether each name that is stated as sure is right."""
     return [one.right for one in stated if one.probability >= SURE]
+
+
+def _weak(records: Sequence[Record], unknown: bool) -> list[bool]:
+    """Whether each improbable name, beside an unknown cause or otherwise, is right."""
+    found = []
+    for record in records:
+        for effect in record["effects"]:
+            if flagged(record) == unknown and effect["probability"] < WEAK:
+                found.append(not wrong({**record, "effects": [effect]}))
+    return found
 
 
 def of_kind(records: Iterable[Record], *kinds: str) -> list[Record]:
