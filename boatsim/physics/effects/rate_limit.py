@@ -119,6 +119,17 @@ class RateLimit(ChannelEffect):
     )
 
 
+# Of a rudder or a drive that turns; its words are those of the preset
+TURN_RATE: ParameterChanges = {
+    "low": 0.0005,
+    "high": INSTANT,
+    "unit": "rad/s",
+    "spread": 2.0,
+    "inactive_value": INSTANT,
+    "usual": USUAL,
+}
+TURN_RATE_STARTS = ({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2})
+
 SteeringRateLimit = preset_effect(
     RateLimit,
     "SteeringRateLimit",
@@ -128,17 +139,9 @@ SteeringRateLimit = preset_effect(
     acts_on="angle",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
+    starts=TURN_RATE_STARTS,
     frees={
-        "rate": {
-            "low": 0.0005,
-            "high": INSTANT,
-            "unit": "rad/s",
-            "words": "largest rate of turn of the steering",
-            "spread": 2.0,
-            "inactive_value": INSTANT,
-            "usual": USUAL,
-        },
+        "rate": {**TURN_RATE, "words": "largest rate of turn of the steering"},
         "lag": {"spread": 0.3},
     },
     fixed={"instant": INSTANT},
@@ -148,7 +151,7 @@ SteeringRateLimit = preset_effect(
 DriveRateLimit = preset_effect(
     RateLimit,
     "DriveRateLimit",
-    words="the thrust or shaft rate of one drive changes at a limited rate",
+    words="the thrust or shaft speed of one drive changes at a limited rate",
     shown_by="large steps of this drive alone",
     acts_on="thrust|shaft",
     once_per="actuator",
@@ -176,17 +179,9 @@ AzimuthRateLimit = preset_effect(
     once_per="actuator",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
+    starts=TURN_RATE_STARTS,
     frees={
-        "rate": {
-            "low": 0.0005,
-            "high": INSTANT,
-            "unit": "rad/s",
-            "words": "largest rate of turn of this drive",
-            "spread": 2.0,
-            "inactive_value": INSTANT,
-            "usual": USUAL,
-        },
+        "rate": {**TURN_RATE, "words": "largest rate of turn of this drive"},
     },
     fixed={"instant": INSTANT},
 )
