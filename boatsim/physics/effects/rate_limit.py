@@ -119,17 +119,6 @@ class RateLimit(ChannelEffect):
     )
 
 
-# Of a rudder or a drive that turns; its words are those of the preset
-TURN_RATE: ParameterChanges = {
-    "low": 0.0005,
-    "high": INSTANT,
-    "unit": "rad/s",
-    "spread": 2.0,
-    "inactive_value": INSTANT,
-    "usual": USUAL,
-}
-TURN_RATE_STARTS = ({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2})
-
 SteeringRateLimit = preset_effect(
     RateLimit,
     "SteeringRateLimit",
@@ -139,9 +128,17 @@ SteeringRateLimit = preset_effect(
     acts_on="angle",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=TURN_RATE_STARTS,
+    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={
-        "rate": {**TURN_RATE, "words": "largest rate of turn of the steering"},
+        "rate": {
+            "low": 0.0005,
+            "high": INSTANT,
+            "unit": "rad/s",
+            "words": "largest rate of turn of the steering",
+            "spread": 2.0,
+            "inactive_value": INSTANT,
+            "usual": USUAL,
+        },
         "lag": {"spread": 0.3},
     },
     fixed={"instant": INSTANT},
@@ -179,9 +176,17 @@ AzimuthRateLimit = preset_effect(
     once_per="actuator",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=TURN_RATE_STARTS,
+    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={
-        "rate": {**TURN_RATE, "words": "largest rate of turn of this drive"},
+        "rate": {
+            "low": 0.0005,
+            "high": INSTANT,
+            "unit": "rad/s",
+            "words": "largest rate of turn of this drive",
+            "spread": 2.0,
+            "inactive_value": INSTANT,
+            "usual": USUAL,
+        },
     },
     fixed={"instant": INSTANT},
 )
