@@ -645,7 +645,7 @@ def map_recording(
     """
     vessel = program.vessel
     axes = dof_in_state_order(vessel)
-    where = _name_of(recording)
+    where = recording.origin
     found, families, codes = list[Signal](), list[str](), list[int]()
     for signal in motion_signals(vessel.dof):
         if signal.column in recording.signals:
@@ -726,7 +726,7 @@ def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]
         missing = [motion_signals(vessel.dof)[0].column]
     if missing:
         raise BadInput(
-            f"{_name_of(recording)}: column {missing[0]} is missing, without which "
+            f"{recording.origin}: column {missing[0]} is missing, without which "
             f"{vessel.name} can not be followed"
         )
 
@@ -908,7 +908,7 @@ def specified_noise(recording: Recording) -> dict[str, float]:
     for family, sd in noise.items():
         if not 0 < sd < HUGE:
             raise BadInput(
-                f"{_name_of(recording)}: noise {family} = {sd:g}; allowed is more than 0, at most "
+                f"{recording.origin}: noise {family} = {sd:g}; allowed is more than 0, at most "
                 f"{HUGE:g}"
             )
     return noise
@@ -920,11 +920,6 @@ def merged_facts(vessel: Vessel, recording: Recording) -> dict[str, Any]:
     Facts are for example the forward speed, or the walls of the tank.
     """
     return {**vessel.diagnosis.facts, **recording.notes.facts}
-
-
-def _name_of(recording: Recording) -> str:
-    """The file of a recording, or its name."""
-    return str(recording.path or recording.name)
 
 
 def prior_noise_levels(
@@ -943,7 +938,7 @@ def prior_noise_levels(
         BadInput: The notes specify a level out of range.
     """
     axes, recording = dof_in_state_order(vessel), recordings[0]
-    where, notes = _name_of(recording), recording.notes.ambient
+    where, notes = recording.origin, recording.notes.ambient
     specified = notes.get("force_rms", {})
     if not isinstance(specified, Mapping):
         named = notes.get("axes", axes)

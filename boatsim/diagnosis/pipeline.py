@@ -30,7 +30,10 @@ from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.answer.stages import Stages
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
-from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
+from boatsim.diagnosis.checks.ignored_commands import (
+    check_ignored_commands,
+    recordings_that_follow_commands,
+)
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.checks.rest import cut_intervals_at_rest
 from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, recordings_without_pushes
@@ -225,7 +228,12 @@ def _fit_and_select(
     base = fit_baseline_models(question)
     if cannot_follow_recordings(question.problem, base.recalibrated):
         return None
-    findings = (*findings, *find_ignored_commands(loaded, question, base))
+    ignored = find_ignored_commands(loaded, question, base)
+    if ignored:
+        findings = (*findings, *ignored)
+        loaded = recordings_that_follow_commands(loaded, question.problem, ignored)
+        question = set_up_estimation_problem(loaded, question.problem.config)
+        base = fit_baseline_models(question)
     selection = select_candidates(question, base, loaded, report_part_of(report, *SELECTING))
     given = loaded.findings
     loaded, kept = cut_unrecorded_pushes(loaded, question, selection.ranking.best)
@@ -271,7 +279,7 @@ def _diagnose_without_fit(
     begin: float,
 ) -> Diagnosis:
     """Return the diagnosis of recordings that no fit follows. Raises BadInput."""
-    where = str(loaded.fitted[0].path or loaded.fitted[0].name)
+    where = loaded.fitted[0].origin
     ranking, evaluation = results_without_fit(question.problem, question.held_out, where)
     ranking = _with_skipped(ranking, *failures)
     decision = decision_without_fit(question.problem, ranking)
@@ -325,7 +333,7 @@ def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Find
     problem = question.problem
     compared = compare_reinterpretations(loaded.fitted, question.map_recording, problem)
     first = loaded.fitted[0]
-    whole = str(first.path or first.name)
+    whole = first.origin
     findings = []
     for finding in (*loaded.findings, *compared):
         findings.append(finding if finding.run else replace(finding, run=whole))
@@ -365,7 +373,7 @@ def find_ignored_commands(
     Returns:
         Findings of kind "drive", one for each recording that has such times.
     """
-    names = [str(one.path or one.name) for one in (*loaded.fitted, *loaded.held_out)]
+    names = [one.origin for one in (*loaded.fitted, *loaded.held_out)]
     recordings = (*question.problem.recordings, *question.held_out)
     return check_ignored_commands(question.problem, base.nominal, recordings, names)
 

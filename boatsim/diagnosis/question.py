@@ -122,7 +122,7 @@ def _uncertainty(
     check_uncertain_coefficients(vessel, uncertainty, where)
     for recording in (*loaded.fitted, *loaded.held_out):
         specified = recording.notes.coefficient_uncertainty
-        where = f"{recording.path or recording.name} by its recording.toml"
+        where = f"{recording.origin} by its recording.toml"
         check_uncertain_coefficients(loaded.vessels[recording.path], specified, where)
     return uncertainty | loaded.fitted[0].notes.coefficient_uncertainty
 

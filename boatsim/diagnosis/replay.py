@@ -41,7 +41,7 @@ def replay_recording(
     report("free runs", 0.8)
     runs = free_runs(problem, {"simulated": fitted}, problem.recordings, horizon)
     if not runs:
-        name, whole = recording.path or recording.name, recording.t[-1] - recording.t[0]
+        name, whole = recording.origin, recording.t[-1] - recording.t[0]
         raise BadInput(f"{name}: {whole:g} s long; a free run of {horizon:g} s does not fit")
     return runs
 

@@ -155,6 +155,11 @@ class Recording:
         """Name, number of rows and signals; the values would fill pages."""
         return f"<Recording {self.name}: {len(self)} rows of {len(self.signals)} signals>"
 
+    @property
+    def origin(self) -> str:
+        """File that it was read from, or its name if it is one in memory."""
+        return str(self.path or self.name)
+
     def __getitem__(self, name: str) -> Array:
         """Return the values (N,) of a signal. Raises SignalMissing."""
         check_instance("name", name, str, "a text")
@@ -273,7 +278,7 @@ class Recording:
         Raises:
             BadInput: A column does not exist, or x_m and y_m have different delays.
         """
-        place = str(self.path or self.name)
+        place = self.origin
         t, signals = shifted_columns(self.t, self.signals, latency, place)
         return replace(self, t=t, signals=signals)
 
@@ -300,7 +305,7 @@ class Recording:
         longest = max(parts, key=lambda part: float(np.ptp(part.t)))
         begin, end = longest.notes.use[0]
         note = (
-            f"{self.path or self.name}: of {len(parts)} parts to use the longest one is used here, "
+            f"{self.origin}: of {len(parts)} parts to use the longest one is used here, "
             f"{begin:g} to {end:g} s"
         )
         return replace(longest, remarks=(*longest.remarks, note))

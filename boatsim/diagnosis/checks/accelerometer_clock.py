@@ -86,7 +86,7 @@ def correct_pose_clock(recording: Recording, vessel: Vessel, config: ChecksConfi
     begin, end = error.delay_at(recording.t[[0, -1]]).tolist()
     names = ", ".join(_witnesses(recording).values())
     remark = (
-        f"{recording.path or recording.name}: the poses are {POSE_CLOCK}: they are "
+        f"{recording.origin}: the poses are {POSE_CLOCK}: they are "
         f"{begin:+.2f} s late at the beginning and {end:+.2f} s at the end, as the accelerometers "
         f"show ({names}; correlation with the second derivative "
         f"{error.recorded_correlation:.3f} as recorded, {error.correlation:.3f} corrected)"

@@ -179,7 +179,7 @@ def _wander(
                 probability=config.probability_evident,
                 clock=CLOCK_BY_MOTION,
                 words="the times of the rows run unevenly",
-                run=_run_of(recording),
+                run=recording.origin,
             )
         )
     return found
@@ -210,7 +210,7 @@ def _constant_rate(
                 probability=config.probability_strong,
                 changes=(Change("t_s", "t_s", rate),),
                 words="the clock of the log runs too fast or too slowly",
-                run=_run_of(recording),
+                run=recording.origin,
             )
         )
     return found
@@ -228,9 +228,5 @@ def _velocity_gain(recording: Recording, gain: float, sd: float, config: ChecksC
         probability=config.probability_strong,
         changes=tuple(Change(name, name, gain) for name in SPEEDS),
         words="the recorded velocities have a wrong gain",
-        run=_run_of(recording),
+        run=recording.origin,
     )
-
-
-def _run_of(recording: Recording) -> str:
-    return str(recording.path or recording.name)

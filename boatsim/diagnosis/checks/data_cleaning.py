@@ -121,7 +121,7 @@ def cleaning_findings(recording: Recording) -> list[Finding]:
 
     The corrections are read from the remarks of the recording, such as dropped outliers.
     """
-    file = f"{recording.path or recording.name}: "
+    file = f"{recording.origin}: "
     found = []
     for remark in recording.remarks:
         for phrase, name in FINDING_OF_REMARK.items():

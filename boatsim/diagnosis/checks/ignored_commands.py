@@ -2,21 +2,25 @@
 
 Another person may steer by a second remote control, or the drives may be off while the boat is
 towed or drifts. The motion then shows none of the commanded forces, although it shows them at other
-times of the same recordings. A fit of the whole would take the drives for weak.
+times of the same recordings. A fit of the whole would take the drives for weak, so these rows are
+cut out, and the recording becomes several.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.cut_recordings import Interval, parts_outside_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording
 
 Rows = NDArray[np.bool_]
 
@@ -74,7 +78,46 @@ def check_ignored_commands(
         ignored &= answer.speed > config.ignored_least_speed * float(np.median(speeds))
         spans = _spans(mapped.times, ignored, _window(problem))
         if spans:
-            found.append(_finding(mapped, spans, name, config))
+            found.append(_finding(spans, name, config))
+    return found
+
+
+def recordings_that_follow_commands(
+    loaded: LoadedRecordings, problem: Problem, findings: Sequence[Finding]
+) -> LoadedRecordings:
+    """Return recordings without the times in which vessels move, but not by their commands.
+
+    Args:
+        loaded: The recordings.
+        problem: The same recordings, mapped.
+        findings: Findings "commands_ignored" about them.
+    """
+    spans = dict[str, list[Interval]]()
+    for finding in findings:  # a recording that was cut before has several
+        spans.setdefault(finding.run, []).extend(finding.spans)
+    # a mean over a window falls below the limit only well inside the time
+    margin = 0.5 * _window(problem)
+
+    def parts(recordings: Sequence[Recording]) -> list[Recording]:
+        found = []
+        for recording in recordings:
+            own = sorted(spans.get(recording.origin, ()))
+            pieces = parts_outside_intervals(recording, _widened(own, margin))
+            found += pieces or [recording]
+        return found
+
+    return replace(loaded, fitted=parts(loaded.fitted), held_out=parts(loaded.held_out))
+
+
+def _widened(spans: Sequence[Interval], margin: float) -> list[Interval]:
+    """Intervals [s] with a margin on both sides, joined where they then overlap."""
+    found = list[Interval]()
+    for begin, end in spans:
+        first, last = begin - margin, end + margin
+        if found and first <= found[-1][1]:
+            found[-1] = (found[-1][0], last)
+        else:
+            found.append((first, last))
     return found
 
 
@@ -153,26 +196,16 @@ def _spans(t: Array, rows: Rows, least: float) -> list[tuple[float, float]]:
     return found
 
 
-def _finding(
-    mapped: MappedRecording, spans: list[tuple[float, float]], name: str, config: ChecksConfig
-) -> Finding:
+def _finding(spans: list[tuple[float, float]], name: str, config: ChecksConfig) -> Finding:
     """The finding about one recording."""
     texts = ", ".join(f"{begin:.4g} to {end:.4g} s" for begin, end in spans)
-    begin, end = float(mapped.times[0]), float(mapped.times[-1])
-    use = None
-    if len(spans) == 1 and spans[0][1] == end and spans[0][0] > begin:
-        use = (begin, spans[0][0])
-    elif len(spans) == 1 and spans[0][0] == begin and spans[0][1] < end:
-        use = (spans[0][1], end)
     return Finding(
         "commands_ignored",
         f"from {texts} the boat moves, but its motion shows none of the commanded forces, which it "
-        "shows at other times",
-        kind="drive",
+        "shows at other times; the diagnosis leaves these rows out",
+        kind="mended",
         probability=config.probability_likely,
         spans=tuple(spans),
-        use=use,
-        remedy="if another person steered or the drives were off, leave this time out",
         words="commands that the drives did not follow",
         run=name,
     )

@@ -49,7 +49,7 @@ def drop_interpolated_samples(
     if not words:
         return recording
     remark = (
-        f"{recording.path or recording.name}: values {INTERPOLATED}, exact to the last digit, and "
+        f"{recording.origin}: values {INTERPOLATED}, exact to the last digit, and "
         f"are not used: {'; '.join(words)} of {len(recording)} rows"
     )
     return replace(recording, signals=signals, remarks=(*recording.remarks, remark))

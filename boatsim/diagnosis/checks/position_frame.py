@@ -38,7 +38,7 @@ def drop_rotated_positions(
     if not (whole and share > config.rotation_min_sds * sd):
         return recording
     remark = (
-        f"{recording.path or recording.name}: x_m, y_m and u_mps, v_mps contradict each other in "
+        f"{recording.origin}: x_m, y_m and u_mps, v_mps contradict each other in "
         f"proportion to yaw rate and distance from the origin (share {share:.2f}, sd {sd:.2g}). "
         "The positions were rotated with the heading and are not used"
     )

@@ -42,7 +42,7 @@ def drop_position_outliers(
     if first:
         kept = recording.between(float(recording.t[first]), float(recording.t[-1]))
         remark = (
-            f"{recording.path or recording.name}: the rows before t = {recording.t[first]:g} s are "
+            f"{recording.origin}: the rows before t = {recording.t[first]:g} s are "
             "off the course of the following fixes and are not used"
         )
         recording = replace(kept, remarks=(*kept.remarks, remark))
@@ -59,7 +59,7 @@ def drop_position_outliers(
         outlier |= excursion_rows(recording.t, values, config.checks)
         if outlier.any():
             remarks.append(
-                f"{recording.path or recording.name}: {', '.join(names)} jump away and return "
+                f"{recording.origin}: {', '.join(names)} jump away and return "
                 f"({int(outlier.sum())} of {len(recording)} rows, first at "
                 f"{recording.t[outlier][0]:g} s); these values are not used"
             )

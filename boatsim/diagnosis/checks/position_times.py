@@ -44,7 +44,7 @@ def correct_position_times(recording: Recording) -> Recording:
         moved[measured, i] = _at_rows(t, regular, places[measured, i])
     shift = float(np.sqrt(np.mean((regular - t) ** 2)))
     remark = (
-        f"{recording.path or recording.name}: x_m, y_m {LATE_BY_ROWS}: every {period:.4g} s by the "
+        f"{recording.origin}: x_m, y_m {LATE_BY_ROWS}: every {period:.4g} s by the "
         f"track, the rows deviate by {shift:.2g} s rms; the positions are moved along the track to "
         "the times of their rows"
     )

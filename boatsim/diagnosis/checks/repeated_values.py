@@ -37,7 +37,7 @@ def drop_repeated_values(recording: Recording) -> Recording:
         repeated = repeated_rows(np.column_stack([signals[n] for n in names]))
         if repeated.any():
             remarks.append(
-                f"{recording.path or recording.name}: {words[names]} until the next. "
+                f"{recording.origin}: {words[names]} until the next. "
                 f"{int(repeated.sum())} of {len(recording)} rows are repetitions and are not used"
             )
             signals |= {n: np.where(repeated, np.nan, signals[n]) for n in names}

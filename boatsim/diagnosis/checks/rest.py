@@ -117,5 +117,5 @@ def rest_finding(recording: Recording, intervals: Sequence[Interval]) -> Finding
         kind="mended",
         spans=tuple(intervals),
         words="stretches at rest",
-        run=str(recording.path or recording.name),
+        run=recording.origin,
     )

@@ -93,7 +93,7 @@ def check_recording(
     found = cleaning_findings(cleaned)
     for check in RECORDING_CHECKS:
         found += check(recording, vessel, config)
-    return _of_run(found, recording.path or recording.name)
+    return _of_run(found, recording.origin)
 
 
 def check_identifiability(
@@ -112,7 +112,7 @@ def check_identifiability(
     found: list[Finding] = []
     for check in IDENTIFIABILITY_CHECKS:
         found += check(recording, vessel, config)
-    return _of_run(found, recording.path or recording.name)
+    return _of_run(found, recording.origin)
 
 
 def _of_run(found: list[Finding], run: Path | str) -> list[Finding]:

@@ -36,7 +36,7 @@ def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksCon
         if command.turns != "starboard":
             correlation = -correlation
         if correlation < -config.rudder_min_correlation:
-            remark = f"{recording.path or recording.name}: {REMARK.format(name)}"
+            remark = f"{recording.origin}: {REMARK.format(name)}"
             recording = replace(
                 recording,
                 signals={**recording.signals, name: -recording.signals[name]},

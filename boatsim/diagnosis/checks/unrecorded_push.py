@@ -137,7 +137,7 @@ def push_finding(recording: Recording, pushes: Sequence[Push]) -> Finding:
         kind="mended",
         spans=tuple((push.begin, push.end) for push in pushes),
         words="a push that was not recorded",
-        run=str(recording.path or recording.name),
+        run=recording.origin,
     )
 
 

@@ -1,14 +1,19 @@
-"""Times in which a boat moves, but not by its recorded commands, are reported."""
+"""Times in which a boat moves, but not by its recorded commands, are reported and left out."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from boatsim.diagnosis import loading
 from boatsim.diagnosis.checks.finding import Finding
-from boatsim.diagnosis.checks.ignored_commands import check_ignored_commands
-from boatsim.diagnosis.loading import Request
+from boatsim.diagnosis.checks.ignored_commands import (
+    check_ignored_commands,
+    recordings_that_follow_commands,
+)
+from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.recordings.table import Recording, write_csv
@@ -20,8 +25,16 @@ OFF = 70.0  # [s]
 DRIFT = 0.2  # [m/s] abeam
 
 
-def findings(tmp_path: Path, speed: float | None) -> list[Finding]:
-    """Findings about two runs of a boat with four thrusters.
+class Checked(NamedTuple):
+    """Recordings of a boat, the same on its program, and the findings about the fitted ones."""
+
+    loaded: LoadedRecordings
+    problem: Problem
+    findings: list[Finding]
+
+
+def checked(tmp_path: Path, speed: float | None) -> Checked:
+    """Check two runs of a boat with four thrusters, and a third one that is held out.
 
     From a time on the second one drifts abeam with its drives off, while the program goes on to log
     commands; None: it obeys to the end.
@@ -40,7 +53,8 @@ def findings(tmp_path: Path, speed: float | None) -> list[Finding]:
     loaded = loading.load_recordings(Request(files[:2], files[2:], vessel=str(vessel)))
     problem = set_up_estimation_problem(loaded, with_candidates=False).problem
     fit = fit_baseline(problem).nominal
-    return check_ignored_commands(problem, fit, problem.recordings, ["one", "two"])
+    names = [one.origin for one in loaded.fitted]
+    return Checked(loaded, problem, check_ignored_commands(problem, fit, problem.recordings, names))
 
 
 def drifting(signals: dict[str, np.ndarray], t: np.ndarray, speed: float) -> None:
@@ -64,14 +78,21 @@ def drifting(signals: dict[str, np.ndarray], t: np.ndarray, speed: float) -> Non
 
 
 @pytest.mark.slow
-def test_drives_that_are_off_while_the_boat_drifts_are_reported(tmp_path):
-    (finding,) = findings(tmp_path, DRIFT)
-    assert (finding.name, finding.run) == ("commands_ignored", "two")
+def test_the_time_in_which_a_boat_drifts_with_its_drives_off_is_reported_and_left_out(tmp_path):
+    loaded, problem, (finding,) = checked(tmp_path, DRIFT)
+    first, second = loaded.fitted
+    assert (finding.name, finding.run) == ("commands_ignored", second.origin)
     begin, end = finding.spans[0][0], finding.spans[-1][1]
     assert begin == pytest.approx(OFF, abs=8.0)
     assert end == pytest.approx(119.8, abs=0.5)
+    kept = recordings_that_follow_commands(loaded, problem, [finding])
+    assert [len(one) for one in kept.held_out] == [len(one) for one in loaded.held_out]
+    whole, part = kept.fitted
+    assert whole.t.tolist() == first.t.tolist()
+    assert 0.7 * OFF < part.t[-1] < OFF  # less what is too near to tell
+    assert (part.t[0], part.origin) == (second.t[0], second.origin)
 
 
 @pytest.mark.parametrize("speed", [None, 0.0])
 def test_a_boat_that_obeys_or_does_not_move_is_not_accused(tmp_path, speed):
-    assert findings(tmp_path, speed) == []
+    assert checked(tmp_path, speed).findings == []
