@@ -12,7 +12,6 @@ import argparse
 import os
 from pathlib import Path
 
-from boatsim.diagnosis.config import DEFAULT
 from validation.calibration import campaign, table, weights
 from validation.calibration.curve import reliability_curve
 from validation.calibration.owner_records import owner_records
@@ -50,8 +49,8 @@ def main() -> None:
     parser.add_argument(
         "--beside-unknown",
         type=float,
-        default=DEFAULT.decide.least_probability_beside_unknown,
-        help="probability from which an effect beside an unknown cause is named (default: in use)",
+        metavar="NATS",
+        help="log odds added to an effect beside an unknown cause (default: those in use)",
     )
     args = parser.parse_args()
     if not args.tables:

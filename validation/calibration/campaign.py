@@ -11,9 +11,16 @@ from typing import Any
 import numpy as np
 from rich.progress import Progress
 
-from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.config import DEFAULT, DecideConfig
+from boatsim.diagnosis.open_set.log_signs import LogSigns
+from boatsim.diagnosis.open_set.probability import (
+    logistic_features,
+    probability_beside_unknown,
+    probability_of_true_cause,
+)
 from validation.calibration.unknown_causes import UNKNOWN
 from validation.calibration.vessels import BOATS, PLANS
+from validation.calibration.weights import consistency, identified
 from validation.practice.cause import Maker, Rng
 from validation.practice.make import CALIBRATION, Trial, make_trial
 
@@ -133,31 +140,46 @@ def record_file(out: Path, job: Job) -> Path:
     return out / f"{job.name}.json"
 
 
-def records(
-    out: Path, beside_unknown: float = DEFAULT.decide.least_probability_beside_unknown
-) -> Iterator[Record]:
+def records(out: Path, odds_beside_unknown: float | None = None) -> Iterator[Record]:
     """Yield the recorded diagnoses of a folder in order of their names.
 
     Args:
         out: The folder.
-        beside_unknown: Probability from which an effect beside an unknown cause is named. Records
-            are divided by it again, so that another limit needs no new campaign.
+        odds_beside_unknown: Log odds added beside an unknown cause; None: those in use. Records are
+            decided by it again, so that another value needs no new campaign.
     """
+    config = DEFAULT.decide
+    if odds_beside_unknown is not None:
+        config = replace(config, odds_beside_unknown=odds_beside_unknown)
     for file in sorted(out.glob("[SU]*_T*.json")):
         for found in json.loads(file.read_text()):
-            yield with_limit(found, beside_unknown)
+            yield decided_again(found, config)
 
 
-def with_limit(record: Record, beside_unknown: float) -> Record:
-    """Return a record whose names beside an unknown cause have at least a given probability."""
-    signs = record["signs"]
-    if not record["unknown"]["flag"] or signs["log"].get("estimated"):
-        return record
-    probability = {one["name"]: one["probability"] for one in signs["effects"]}
-    named, possible = [], [*record["also_possible"]]
-    for effect in record["effects"]:
-        is_probable = probability[effect["name"]] >= beside_unknown
-        (named if is_probable else possible).append(effect)
+def decided_again(record: Record, config: DecideConfig) -> Record:
+    """Return a record whose effects have the probabilities and names of a given configuration."""
+    signs = {one["name"]: one for one in record["signs"]["effects"] if not one["refines"]}
+    of_log = LogSigns(**record["signs"]["log"])
+    beside_unknown = record["unknown"]["flag"] and not of_log.estimated
+    named, possible = [], []
+    for effect in (*record["effects"], *record["also_possible"]):
+        own = signs.get(effect["name"])
+        if own is None:
+            (named if effect in record["effects"] else possible).append(effect)
+            continue
+        found = logistic_features(
+            identified(own), own["stochastic"], consistency(own["signs"]), of_log, config
+        )
+        probability = probability_of_true_cause(found, config)
+        if beside_unknown:
+            probability = probability_beside_unknown(probability, config)
+        # the part of the effect itself among its look-alikes stays
+        own_part = effect["probability"] / own["probability"] if own["probability"] else 0.0
+        confirmed = effect["confirmed"] or effect in record["effects"]
+        is_named = confirmed and probability >= config.least_probability
+        tied = {"tied_with": own["tied_with"]}  # which an entry of a possible effect lacks
+        stated = {**effect, **tied, "probability": probability * own_part}
+        (named if is_named else possible).append(stated)
     return {**record, "effects": named, "also_possible": possible}
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0)
 SURE = 0.99  # probability from which a statement is called sure
-WEAK = 0.7  # probability below which a name is improbable: the limit beside an unknown cause
+WEAK = 0.7  # probability below which a name is improbable
 QUANTILE = 1.96  # two-sided 95 % of a normal distribution
 
 Record = dict[str, Any]

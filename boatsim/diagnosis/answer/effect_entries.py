@@ -95,7 +95,7 @@ def possible_entry(
     """
     effect = problem.candidates[doubtful.name]
     judged = decision.judgement_of_effect(doubtful.name)
-    why = reason_for_doubt(judged, decision.log, problem.config.decide)
+    why = reason_for_doubt(judged, decision)
     if judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)
     return {

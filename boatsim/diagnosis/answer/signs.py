@@ -8,11 +8,9 @@ from boatsim.diagnosis.answer.schema import (
     VariationEntry,
 )
 from boatsim.diagnosis.candidates import name_without_prefixes
-from boatsim.diagnosis.config import DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.decision import Decision, Judgement
-from boatsim.diagnosis.open_set.log_signs import LogSigns
-from boatsim.diagnosis.open_set.probability import exceeds_range
+from boatsim.diagnosis.open_set.probability import exceeds_range, probability_beside_unknown
 
 
 def cause_statistics_entry(decision: Decision) -> SignsEntry:
@@ -56,17 +54,16 @@ def cause_statistics_entry(decision: Decision) -> SignsEntry:
     }
 
 
-def reason_for_doubt(judged: Judgement, log: LogSigns, config: DecideConfig) -> str:
+def reason_for_doubt(judged: Judgement, decision: Decision) -> str:
     """Return the clearest reason, in words, to doubt that an effect is a true cause.
 
     The effect may be a stand-in that only imitates another, unmodelled cause.
 
     Args:
         judged: Statistics of the effect over the recordings.
-        log: Statistics of the recordings as a whole.
-        config: Settings of the decision.
+        decision: Decision on all identified effects.
     """
-    signs = judged.signs
+    signs, config = judged.signs, decision.problem.config.decide
     held_out = signs.held_out
     if abs(held_out.value - 1.0) > config.clear_deviation * held_out.sd:
         return (
@@ -85,11 +82,12 @@ def reason_for_doubt(judged: Judgement, log: LogSigns, config: DecideConfig) -> 
         )
     if judged.stochastic and signs.at_bound:
         return "its spectrum is at the end of the range that waves have"
-    if log.unexplained > config.clear_rest:
+    if decision.log.unexplained > config.clear_rest:
         return "much of the missing force remains even with this effect in the model"
     if exceeds_range(signs, config):
         return "its fitted size is at the end of the range of plausible values"
-    if judged.probability >= config.least_probability:
+    least = probability_beside_unknown(config.least_probability, config)
+    if decision.beside_unknown and judged.probability >= least:
         return "an unknown cause remains, and beside one such an effect is often a stand-in"
     return "several weak signs together make it more likely that it stands in for another cause"
 

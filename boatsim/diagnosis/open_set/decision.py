@@ -12,7 +12,11 @@ from boatsim.diagnosis.open_set.confirmation import (
 )
 from boatsim.diagnosis.open_set.consistency import Consistency, effect_consistency
 from boatsim.diagnosis.open_set.log_signs import NO_SIGNS, LogSigns, unknown_cause_indicators
-from boatsim.diagnosis.open_set.probability import logistic_features, probability_of_true_cause
+from boatsim.diagnosis.open_set.probability import (
+    logistic_features,
+    probability_beside_unknown,
+    probability_of_true_cause,
+)
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain, unknown_cause_threshold
@@ -54,12 +58,14 @@ class Decision:
             and its `doubtful` ones are only possible.
         judgements: Statistics and probability of all these effects.
         log: Statistics of the recordings as a whole that indicate an unmodelled cause.
+        beside_unknown: Whether the probabilities are those beside an unknown cause.
     """
 
     problem: Problem
     ranking: Ranking
     judgements: tuple[Judgement, ...]
     log: LogSigns
+    beside_unknown: bool = False
 
     def judgement_of_effect(self, name: str) -> Judgement:
         """Return the statistics and probability of one identified effect.
@@ -78,10 +84,9 @@ def decide(
     An effect that is probably a stand-in for another cause, or that held-out recordings do not
     confirm, is not stated as a cause. It stays in the patched vessel, because it describes the
     data, and if it explains much the cause is reported as unknown. So it is if held-out recordings
-    require a force that no identified effect gives. Beside an unknown cause an effect must be more
-    probable to be named, because it is more often a stand-in. An effect that only refines an
-    estimated number of the vessel file is not a cause, so that held-out recordings alone decide
-    about it.
+    require a force that no identified effect gives. Beside an unknown cause an effect is less
+    probable, because it is more often a stand-in. An effect that only refines an estimated number
+    of the vessel file is not a cause, so that held-out recordings alone decide about it.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -99,35 +104,34 @@ def decide(
         judgements.append(_judge(problem, ranking.best, one, own, of_log, errors))
     unseen = of_log.held_out_unexplained > config.decide.held_out_share
     ranking = replace(ranking, held_out_remains=unseen and of_log.held_out_structured)
-    least = config.decide.least_probability
-    decided = _stated(problem, ranking, judgements, candidates, least)
-    if decided.has_unexplained_force_or_cause and not of_log.estimated:
-        least = max(least, config.decide.least_probability_beside_unknown)
-        decided = _stated(problem, ranking, judgements, candidates, least)
-    return Decision(problem, decided, tuple(judgements), of_log)
+    decided = _stated(problem, ranking, judgements, candidates)
+    beside_unknown = decided.has_unexplained_force_or_cause and not of_log.estimated
+    if beside_unknown:
+        for i, judged in enumerate(judgements):
+            probability = probability_beside_unknown(judged.probability, config.decide)
+            judgements[i] = replace(judged, probability=probability)
+        decided = _stated(problem, ranking, judgements, candidates)
+    return Decision(problem, decided, tuple(judgements), of_log, beside_unknown)
 
 
 def _stated(
-    problem: Problem,
-    ranking: Ranking,
-    judgements: Sequence[Judgement],
-    candidates: int,
-    least_probability: float,
+    problem: Problem, ranking: Ranking, judgements: Sequence[Judgement], candidates: int
 ) -> Ranking:
     """Divide the effects into named and possible ones, and mark unnamed ones that explain much."""
+    config = problem.config
     named, doubtful = list[IdentifiedEffect](), list[IdentifiedEffect]()
     stands_in = False
     for judged in judgements:
         probability = judged.probability * judged.effect.probability
         stated = replace(judged.effect, probability=probability)
-        probable = judged.probability >= least_probability
+        probable = judged.probability >= config.decide.least_probability
         if (probable or judged.refines) and judged.outcome != "unconfirmed":
             named.append(stated)
             continue
         doubtful.append(stated)
         others = ranking.explained - stated.gain
-        config = problem.config.select
-        least = required_gain(candidates, config) + unknown_cause_threshold(config, others)
+        remains = unknown_cause_threshold(config.select, others)
+        least = required_gain(candidates, config.select) + remains
         stands_in = stands_in or bool(stated.shared > least)
     return replace(ranking, named=tuple(named), doubtful=tuple(doubtful), stands_in=stands_in)
 

@@ -95,6 +95,16 @@ def probability_of_true_cause(found: dict[str, float], config: DecideConfig) -> 
     return 1.0 / (1.0 + exp(-_within(odds, -most, most)))
 
 
+def probability_beside_unknown(probability: float, config: DecideConfig) -> float:
+    """Return the probability of an effect where an unknown cause is reported beside it.
+
+    Args:
+        probability: Its probability by its own signs, above 0.
+        config: Settings of the decision.
+    """
+    return 1.0 / (1.0 + (1.0 / probability - 1.0) * exp(-config.odds_beside_unknown))
+
+
 def _log_odds_of_constant_size(variation: Variation, config: DecideConfig) -> float:
     """Limited log odds that the size of an effect is as constant as that of a true one.
 

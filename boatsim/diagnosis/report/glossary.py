@@ -97,17 +97,16 @@ def _evidence(f: Findings) -> Entry:
 
 def _probability(f: Findings) -> Entry:
     named = f.setting("decide.least_probability")
-    beside = f.setting("decide.least_probability_beside_unknown")
     return (
         "probability that it is a true cause",
         "The probability that an identified effect is a true cause, and neither one of its "
         "rivals nor a stand-in for a cause that is not among the candidates. It follows "
         "from the size of the effect in each recording, at each time, in each range of speed "
-        "and command and in the held-out recordings, and from the force that remains. Of many "
+        "and command and in the held-out recordings, and from the force that remains; it is "
+        "lower beside an unknown cause, unless the vessel file calls numbers estimated. Of many "
         "simulated logs whose causes are known, this share of such names was right. An "
         f"effect below {100 * named:.0f} %, together with its look-alikes, is only called "
-        f"possible; beside an unknown cause, below {100 * beside:.0f} %, unless the vessel file "
-        "calls numbers estimated.",
+        "possible.",
     )
 
 

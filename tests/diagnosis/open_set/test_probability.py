@@ -11,6 +11,7 @@ from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.open_set.probability import (
     exceeds_range,
     logistic_features,
+    probability_beside_unknown,
     probability_of_true_cause,
 )
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
@@ -137,3 +138,11 @@ def test_the_log_of_the_odds_is_the_weighted_sum_within_its_limit() -> None:
     assert log(probability / (1.0 - probability)) == pytest.approx(odds)
     narrow = replace(CONFIG, largest_log_odds=1.0)
     assert probability_of_true_cause(found, narrow) == pytest.approx(1.0 / (1.0 + exp(1.0)))
+
+
+@pytest.mark.parametrize("before", [1e-9, 0.2, 0.63, 0.999])
+def test_an_unknown_cause_beside_an_effect_changes_its_odds_by_a_factor(before: float) -> None:
+    after = probability_beside_unknown(before, CONFIG)
+    factor = exp(CONFIG.odds_beside_unknown)
+    assert factor < 1.0
+    assert after / (1.0 - after) == pytest.approx(factor * before / (1.0 - before))

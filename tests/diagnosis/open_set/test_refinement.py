@@ -74,10 +74,10 @@ def test_an_effect_that_refines_an_estimate_needs_no_probability(
         pytest.param(quadratic_and_hunting, ROUGH, True, id="estimated numbers"),
     ],
 )
-def test_beside_an_unknown_cause_a_name_must_be_more_probable(
+def test_beside_an_unknown_cause_a_name_is_less_probable(
     missing: Missing, vessel: Vessel, is_named: bool
 ) -> None:
-    limits = replace(DEFAULT.decide, least_probability=0.0, least_probability_beside_unknown=1.0)
+    limits = replace(DEFAULT.decide, least_probability=1e-3, odds_beside_unknown=-20.0)
     found = decided(missing, vessel, replace(DEFAULT, decide=limits))
     named = "quadratic_damping" in [one.name for one in found.ranking.named]
     assert "quadratic_damping" in [one.effect.name for one in found.judgements]
