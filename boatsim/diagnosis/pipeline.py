@@ -217,7 +217,7 @@ class _Selected(NamedTuple):
 
     loaded: LoadedRecordings
     question: Question
-    findings: tuple[Finding, ...]
+    findings: Sequence[Finding]
     decision: Decision
 
 
