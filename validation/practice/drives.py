@@ -142,11 +142,16 @@ def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
     """Limit the rate of the steering gear, more so close to its goal."""
     rate = 0.12 / s / boat.scale
 
+    near = 0.03  # [rad]
+
     def drive(b: Boat, dt: float) -> GoalMap:
-        near = 0.03  # [rad]
-        return apply_dynamics(
-            b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near))
-        )
+        left = np.exp(-rate * dt / near)
+
+        def turn(y: Array, goal: Array) -> Array:
+            """The solution of y' = rate tanh((goal - y) / near); Euler's steps would chatter."""
+            return goal - near * np.arcsinh(left * np.sinh((goal - y) / near))
+
+        return apply_dynamics(b.drive.angles, turn)
 
     return Cause("steering_rate_limit", {"rate_radps": rate}, drive=drive)
 
