@@ -51,6 +51,7 @@ class FeedForwardSpeed(CompiledController):
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
     default_goals: ClassVar = {"jet_rad": 0.0}
+    tuned: ClassVar[tuple[str, ...]] = ("gain",)
     law: ClassVar = law
     memory_type: ClassVar = record_type("started", "goal", "model")
 

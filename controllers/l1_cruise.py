@@ -82,6 +82,7 @@ class L1Cruise(CompiledController):
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
     default_goals: ClassVar = {"jet_rad": 0.0}
+    tuned: ClassVar[tuple[str, ...]] = ("pole", "bandwidth")
     law: ClassVar = law
     memory_type: ClassVar = record_type(
         "started", "goal", "model", "speed", "throttle", loop=loop_memory_type(1)

@@ -105,6 +105,7 @@ class L1Heading(CompiledController):
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
     default_goals: ClassVar = {"throttle": 1.0}
+    tuned: ClassVar[tuple[str, ...]] = ("damping", "bandwidth")
     law: ClassVar = law
     memory_type: ClassVar = record_type(
         "started", "goal", "jet", "error", "rate", loop=loop_memory_type(2)

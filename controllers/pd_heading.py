@@ -72,6 +72,7 @@ class PdHeading(CompiledController):
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
     default_goals: ClassVar = {"throttle": 1.0}
+    tuned: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     law: ClassVar = law
     memory_type: ClassVar = record_type("started", "goal", "error", "rate")
 

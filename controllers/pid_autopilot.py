@@ -128,6 +128,7 @@ class PidAutopilot(Outboards, CompiledController):
     )
     goals: ClassVar[tuple[str, ...]] = STICK
     default_goals: ClassVar = dict.fromkeys(STICK, 0.0)
+    tuned: ClassVar[tuple[str, ...]] = ("kp", "ki", "kd", "surge_kp", "surge_ki")
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
 

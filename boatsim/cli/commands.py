@@ -53,6 +53,7 @@ COMMAND_GROUPS = {
         "manoeuvre",
         "margins",
         "robustness",
+        "tune",
         "capability",
     ),
     "Look at results": ("open",),
@@ -873,6 +874,89 @@ def robustness(
             draw or [],
             spread,
             disturbance or [],
+            out,
+        )
+
+
+@app.command()
+@exits_with_code
+def tune(
+    controller: Annotated[
+        str,
+        typer.Argument(
+            metavar="CONTROLLER[,KEY=V,...]",
+            help="Controller by name or .py file, with changed parameters.",
+        ),
+    ],
+    vessel: Annotated[
+        str,
+        typer.Option(
+            "--vessel",
+            metavar="NAME|FOLDER|FILE",
+            help="Vessel whose boats are drawn; one that a diagnosis has fitted from its spread.",
+        ),
+    ],
+    load: Load = None,
+    gain: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=LOW:HIGH]",
+            help="Gain to tune, within a range. Repeatable [default: those the controller names].",
+        ),
+    ] = None,
+    boats: Annotated[int, typer.Option(min=1, metavar="N", help="Number of drawn boats.")] = 50,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Random seed of draws and sensor noise.")
+    ] = 0,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LAW(...)",
+            help="Draw a number of the vessel differently, such as body.mass=uniform(4,6). "
+            "Repeatable.",
+        ),
+    ] = None,
+    spread: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="FACTOR",
+            help="Factor of the usual spread of the boats; 0: all as in the vessel file.",
+        ),
+    ] = 1.0,
+    disturbance: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=V,V,...]",
+            help="Only under this disturbance, with these values, such as delay=0.2. Repeatable "
+            "[default: all].",
+        ),
+    ] = None,
+    budget: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Number of designs to compare.")
+    ] = 60,
+    out: OutFolder = Path("out/tune"),
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Find the gains of a controller with the smallest errors on randomly drawn boats.
+
+    Prints the errors on boats that the search has not seen, and the stability margins.
+    """
+    from boatsim.cli.tuning import tune_controller
+
+    with trusted_content(content, trust, [vessel]):
+        return tune_controller(
+            controller,
+            vessel,
+            _split_loads(load),
+            gain or [],
+            boats,
+            seed,
+            draw or [],
+            spread,
+            disturbance or [],
+            budget,
             out,
         )
 

@@ -52,13 +52,13 @@ def measure_robustness(
     """
     made: dict[str, Controller] = {}
     for text in controllers:
-        name, controller = _make_controller(text)
+        name, controller = make_controller(text)
         if name in made:
             raise BadInput(f"controller {name} is given twice; allowed is once")
         made[name] = controller
     boat = load_vessel(vessel, loads)
-    sampled = [_parse_draw(text) for text in draws]
-    ladders = dict(_parse_ladder(text) for text in disturbances)
+    sampled = [parse_draw(text) for text in draws]
+    ladders = dict(parse_ladder(text) for text in disturbances)
     with show_task_progress() as report:
         found = run_benchmark(made, boat, boats, seed, sampled, spread, ladders, report)
     for table in result_tables(found):
@@ -72,8 +72,15 @@ def measure_robustness(
     return Exit.MET
 
 
-def _make_controller(text: str) -> tuple[str, Controller]:
-    """Name in the tables and controller of NAME,KEY=VALUE,... Raises BadInput."""
+def make_controller(text: str) -> tuple[str, Controller]:
+    """Return the name in the tables and the controller of NAME,KEY=VALUE,...
+
+    Args:
+        text: Name of a controller, or path of a .py file, with changed parameters.
+
+    Raises:
+        BadInput: The controller or a parameter does not exist, or a value is not allowed.
+    """
     name, *settings = text.split(",")
     values: dict[str, object] = {}
     for setting in settings:
@@ -95,15 +102,15 @@ def _make_controller(text: str) -> tuple[str, Controller]:
     return ",".join([Path(name).stem, *settings]), controller
 
 
-def _parse_value(text: str) -> float | bool:
-    """Number or switch of a parameter. Raises ValueError."""
-    if text in ("true", "false"):
-        return text == "true"
-    return float(text)
+def parse_draw(text: str) -> SampledParameter:
+    """Return the sampled parameter of KEY=DISTRIBUTION(...).
 
+    Args:
+        text: The option of the command line.
 
-def _parse_draw(text: str) -> SampledParameter:
-    """A sampled parameter KEY=DISTRIBUTION(...). Raises BadInput."""
+    Raises:
+        BadInput: The text has another form.
+    """
     key, equals, call = text.partition("=")
     if not equals:
         raise BadInput(
@@ -112,8 +119,15 @@ def _parse_draw(text: str) -> SampledParameter:
     return make_sampled_parameter(key.strip(), call.strip())
 
 
-def _parse_ladder(text: str) -> tuple[str, list[float]]:
-    """Name and values of a disturbance NAME=VALUE,VALUE. Raises BadInput."""
+def parse_ladder(text: str) -> tuple[str, list[float]]:
+    """Return name and values of a disturbance NAME=VALUE,VALUE.
+
+    Args:
+        text: The option of the command line.
+
+    Raises:
+        BadInput: The text has another form, or a value is no number of 0 or more.
+    """
     name, equals, numbers = text.partition("=")
     values = []
     for number in filter(None, map(str.strip, numbers.split(","))):
@@ -130,3 +144,10 @@ def _parse_ladder(text: str) -> tuple[str, list[float]]:
     if equals and not values:
         raise BadInput(f"--disturbance {text}: allowed is NAME or NAME=VALUE,VALUE")
     return name.strip(), values
+
+
+def _parse_value(text: str) -> float | bool:
+    """Number or switch of a parameter. Raises ValueError."""
+    if text in ("true", "false"):
+        return text == "true"
+    return float(text)

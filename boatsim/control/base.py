@@ -54,6 +54,7 @@ class Controller(CheckedParameters):
     # keys a [[goal]] may have; empty: the vessel's command channels
     goals: ClassVar[tuple[str, ...]] = ()
     passes_on: ClassVar[bool] = False  # its goals are the commands; sensors are not used
+    tuned: ClassVar[tuple[str, ...]] = ()  # parameters that `boatsim tune` changes by default
 
     period: float = param(
         0.08, low=0.001, high=10.0, unit="s", words="time between two control steps"

@@ -139,6 +139,12 @@ class AdaptiveJoystick(Outboards, CompiledController):
     )
     goals: ClassVar[tuple[str, ...]] = STICK
     default_goals: ClassVar = dict.fromkeys(STICK, 0.0)
+    tuned: ClassVar[tuple[str, ...]] = (
+        "pole",
+        "yaw_bandwidth",
+        "surge_bandwidth",
+        "heading_gain",
+    )
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
 

@@ -332,6 +332,20 @@ def test_robustness_prints_and_writes_the_largest_value_survived(tmp_path: Path)
     assert missing.exit_code == 2 and "did you mean 'body.mass'" in missing.stderr
 
 
+@pytest.mark.parametrize(
+    ("option", "value", "hint"),
+    [
+        ("--gain", "pole=1", "allowed is NAME or NAME=LOW:HIGH"),
+        ("--gain", "poles", "did you mean 'pole'"),
+        ("--disturbance", "dely", "did you mean 'delay'"),
+    ],
+)
+def test_tune_refuses_wrong_options(tmp_path: Path, option: str, value: str, hint: str) -> None:
+    words = ["tune", "l1_joystick_lag", "--vessel", "joystick_boat", option, value]
+    result = boatsim(*words, "--out", str(tmp_path / "out"))
+    assert result.exit_code == 2 and hint in result.stderr and not (tmp_path / "out").exists()
+
+
 def test_version() -> None:
     assert boatsim("--version").stdout.split() == ["boatsim", __version__]
 

@@ -100,16 +100,10 @@ def run_benchmark(
     Raises:
         BadInput: A controller or disturbance cannot be used.
     """
-    if not 0.0 <= spread <= MOST_SPREAD:
-        raise BadInput(f"spread = {spread:g}; allowed 0 to {MOST_SPREAD:g}")
-    if not 1 <= count <= MOST_BOATS:
-        raise BadInput(f"boats = {count}; allowed 1 to {MOST_BOATS}")
-    for one in sampled:
-        owner = one.key.partition(".")[0]
-        if owner != "body" and vessel.effect(owner) is None:
-            vessel = vessel.with_effect({"use": owner})
-    chosen = _chosen_disturbances(ladders, vessel)
-    prepared, unavailable = _add_effects(vessel, list(chosen))
+    check_boats(count, spread)
+    vessel = with_effects_of(sampled, vessel)
+    chosen = chosen_disturbances(ladders, vessel)
+    prepared, unavailable = add_effects(vessel, list(chosen))
     boats = replace(draw_boats(vessel, count, seed, sampled, spread), vessel=prepared)
     for name, controller in controllers.items():
         check_controller(name, controller, prepared)
@@ -139,6 +133,39 @@ def run_benchmark(
     return Robustness(vessel, boats, signals, bars, tuple(found), unavailable)
 
 
+def check_boats(count: int, spread: float) -> None:
+    """Check the number of drawn boats and the factor of their spread.
+
+    Args:
+        count: Number of drawn boats.
+        spread: Factor of the standard deviations of the usual draws.
+
+    Raises:
+        BadInput: One of them is not allowed.
+    """
+    if not 0.0 <= spread <= MOST_SPREAD:
+        raise BadInput(f"spread = {spread:g}; allowed 0 to {MOST_SPREAD:g}")
+    if not 1 <= count <= MOST_BOATS:
+        raise BadInput(f"boats = {count}; allowed 1 to {MOST_BOATS}")
+
+
+def with_effects_of(sampled: Sequence[SampledParameter], vessel: Vessel) -> Vessel:
+    """Return a vessel with the effects whose parameters are sampled.
+
+    Args:
+        sampled: Parameters with distributions of the user.
+        vessel: The vessel, which need not have these effects.
+
+    Raises:
+        BadInput: An effect does not exist.
+    """
+    for one in sampled:
+        owner = one.key.partition(".")[0]
+        if owner != "body" and vessel.effect(owner) is None:
+            vessel = vessel.with_effect({"use": owner})
+    return vessel
+
+
 def _climb(
     loop: ClosedLoop,
     boats: DrawnBoats,
@@ -159,10 +186,19 @@ def _climb(
     return tuple(points)
 
 
-def _chosen_disturbances(
+def chosen_disturbances(
     ladders: Mapping[str, Sequence[float]] | None, vessel: Vessel
 ) -> dict[Disturbance, Sequence[float]]:
-    """The disturbances with their values in ascending order."""
+    """Return disturbances with their values in ascending order.
+
+    Args:
+        ladders: Names of disturbances with their values, which may be empty for the usual ones;
+            empty or None for all disturbances.
+        vessel: The vessel, whose length scales the usual values.
+
+    Raises:
+        BadInput: A name or a value is not allowed.
+    """
     if not ladders:
         return {one: one.scaled_ladder(vessel.length) for one in DISTURBANCES}
     found: dict[Disturbance, Sequence[float]] = {}
@@ -185,10 +221,18 @@ def _disturbance(name: str) -> Disturbance:
     raise BadInput(unknown_name_message("disturbance", name, names))
 
 
-def _add_effects(
+def add_effects(
     vessel: Vessel, disturbances: Sequence[Disturbance]
 ) -> tuple[Vessel, dict[str, str]]:
-    """The vessel with the effects of all disturbances, and why some do not apply."""
+    """Return the vessel with the effects of all disturbances, and why some do not apply.
+
+    Args:
+        vessel: The vessel.
+        disturbances: The disturbances.
+
+    Returns:
+        The vessel, and the reason by name of a disturbance that does not apply.
+    """
     unavailable = {}
     for disturbance in disturbances:
         try:
