@@ -8,6 +8,7 @@ the middle of what the recordings show.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from math import cos, hypot, pi, sin
 
 import numpy as np
@@ -25,6 +26,8 @@ DAMPING = np.array([3.0, 10.0, 1.0])  # [N s/m, N s/m, N m s]
 STERN, ASIDE = -0.6, 0.19  # [m] of the thrusters, from the mass centre
 LENGTH, DRAUGHT = 1.2, 0.07  # [m]
 WALLS = np.array([[-4.0, -3.0], [4.0, 3.0]])  # [m] of the tank: low and high, along x and y
+SECTION = LENGTH / 60  # [m] length of a section of the hull
+PLACES = SECTION * (np.arange(60) + 0.5) - 0.5 * LENGTH  # [m] of the sections, ahead of the middle
 MAST = 0.5  # [m] height of an antenna
 USUAL = np.array(
     [0.25, 0.05, 0.35]
@@ -118,8 +121,7 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     """
     psi, nu = y[2], y[3:6]
     c, s = cos(psi), sin(psi)
-    solid = sum((body(*part) for part in stowed(real)), np.diag([0.0, 0.0, INERTIA]))
-    water = np.diag(WATER)
+    solid, water = inertias(real)
     thrust, builds_up = turned(y[6:], wanted(command[:2], real), real)
     steer = command[2:] + np.array(real.bent) * np.cos(command[2:])  # a rod of the wrong length
     force = pushed(thrust, steer, real) + damped(nu, real) + held(y, c, s, real)
@@ -132,7 +134,8 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
             -nu[2] * momentum[0],
             nu[1] * momentum[0] - nu[0] * momentum[1],
         ]
-    force += np.array(real.sea) * waves(t)
+    if any(real.sea):
+        force += np.array(real.sea) * waves(t)
     u, v, r = nu
     return np.concatenate(
         [[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force), builds_up]
@@ -149,6 +152,13 @@ def stowed(real: Real) -> tuple[tuple[float, float], ...]:
         (0.5 * mass, x - 0.1),
         (0.5 * mass, x + 0.1),
     )
+
+
+@cache
+def inertias(real: Real) -> tuple[Array, Array]:
+    """Inertia (3, 3) of the boat and of the water that moves along."""
+    solid = sum((body(*part) for part in stowed(real)), np.diag([0.0, 0.0, INERTIA]))
+    return np.asarray(solid), np.diag(WATER)
 
 
 def body(mass: float, x: float) -> Array:
@@ -196,13 +206,13 @@ def damped(nu: Array, real: Real) -> Array:
     force = -(each + [0.0, real.lift[0] * speed, real.lift[1] * speed]) * nu
     along = u * abs(u) / max(speed, 1e-9)  # a hull in a large drift lifts less
     force -= [0.0, real.way[0] * along * r, real.way[1] * along * v]
-    section = LENGTH / 60
-    x = section * (np.arange(60) + 0.5) - 0.5 * LENGTH
+    x, section = PLACES, SECTION
     across = v + x * r
-    keel = (
-        -DAMPING[1] * real.linear[1] * real.skeg * 12.0 / LENGTH**3 * x * across * section
-    )  # fuller at one end
-    force += [0.0, keel.sum(), (x * keel).sum()]
+    if real.skeg:
+        keel = (
+            -DAMPING[1] * real.linear[1] * real.skeg * 12.0 / LENGTH**3 * x * across * section
+        )  # fuller at one end
+        force += [0.0, keel.sum(), (x * keel).sum()]
     if any(real.strips):
         fullness = 1.15 - 0.45 * (2.0 * x / LENGTH) ** 2  # bow and stern are fined
         drag = -0.5 * 1000.0 * real.strips[0] * DRAUGHT * section * fullness * across * abs(across)

@@ -29,6 +29,8 @@ STORED = [
     for file in sorted(path_of("joystick_boat/sway_1").parent.glob("*.json"))
     for name in golden.read_values(file)
 ]
+# Not the first ones of their families, but the only ones with this controller on this vessel
+CONTROLLERS = ("jet_ski/yaw_disturbance_pd", "kynoc/seas_90_sliding_roll")
 OLD = {
     "yaw_rate_inf": {
         "today": 0.5,
@@ -53,18 +55,17 @@ def family(name: str) -> tuple[str, str]:
 def marked_scenarios() -> list[Any]:
     """Scenarios with stored metrics, and when they are run.
 
-    The tests of the thesis are always run. Of each family of other scenarios the first and the last
-    one are slow tests, those between them long ones.
+    The tests of the thesis are always run. Of each family of other scenarios the first one is a
+    slow test, and one with each controller of each vessel; the others are long ones.
     """
     families: dict[tuple[str, str], list[str]] = {}
     for name in STORED:
         families.setdefault(family(name), []).append(name)
     marked: list[Any] = []
     for name in STORED:
-        alike = families[family(name)]
         if name.startswith("joystick_boat/"):
             marked.append(name)
-        elif name in (alike[0], alike[-1]):
+        elif name == families[family(name)][0] or name in CONTROLLERS:
             marked.append(slow(name))
         else:
             marked.append(long(name))

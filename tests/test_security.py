@@ -380,7 +380,9 @@ def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Pa
     assert len(places) == 2
 
 
-@pytest.mark.parametrize("damage", ["laws.py", long("__init__.py"), "*.nbi", long("*.nbc"), "cut"])
+@pytest.mark.parametrize(
+    "damage", ["laws.py", long("__init__.py"), long("*.nbi"), long("*.nbc"), "cut"]
+)
 @pytest.mark.slow
 def test_13_a_damaged_cache_is_built_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str

@@ -300,6 +300,7 @@ def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(
             (Real(line=(0.3, 0.8, 1.5, -1.0)), {"tether": {"north_m": 1.5, "east_m": -1.0}}),
         ],
         1,
+        2,
     ),
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case),
 )

@@ -49,7 +49,7 @@ def strange_vessel() -> Vessel:
     )
 
 
-@pytest.mark.parametrize("name", few(shipped_content_names("vessel"), 0, 6))
+@pytest.mark.parametrize("name", few(shipped_content_names("vessel"), 0, 3))
 def test_the_description_of_each_vessel_is_valid(name: str, tmp_path: Path) -> None:
     validation = pytest.importorskip("fmpy.validation")
     program = Program(with_surroundings(load_vessel(name)))

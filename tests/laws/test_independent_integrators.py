@@ -219,7 +219,7 @@ MEASURED = {  # scenario -> published numbers its norms are held against
 }
 
 
-@pytest.mark.parametrize("name", few(MEASURED, 1))
+@pytest.mark.parametrize("name", few(MEASURED, 1, 2))
 def test_kvlcc2_mmg_gives_the_published_manoeuvres(name: str) -> None:
     made = run(scenario.load(f"kvlcc2_mmg/{name}"))
     metrics = requested_metrics(made)

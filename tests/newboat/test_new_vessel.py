@@ -131,7 +131,7 @@ def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
 # ---- the command
 
 
-@pytest.mark.parametrize("name", few(BOATS, 4))
+@pytest.mark.parametrize("name", few(BOATS, 4, 4))
 def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_path: Path) -> None:
     folder = made(tmp_path / name, BOATS[name])
     found = vessel.load_vessel(str(folder))

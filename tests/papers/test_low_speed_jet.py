@@ -310,7 +310,7 @@ def test_filter_spares_the_nozzle_near_its_frequency_and_costs_accuracy_below() 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "grows"),
-    few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2),
+    few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2, 0),
 )
 def test_delay_that_the_loop_bears(name: str, grows: bool) -> None:
     log_ = done(f"delay_{name}")

@@ -10,6 +10,7 @@ from typing import Any
 
 import boats
 import pytest
+from alike import long
 from typer.testing import CliRunner
 
 from boatsim.cli import app
@@ -128,7 +129,7 @@ def test_a_controller_of_ones_own_that_can_not_be_read(tmp_path: Path, text: str
     assert "own.py" in line_of("margins", tmp_path / "own.py")
 
 
-@pytest.mark.parametrize("name", ["we\"ird 'q' gr\u00f6\u00dfe 50%n", "x\udcff new\nline"])
+@pytest.mark.parametrize("name", [long("we\"ird 'q' gr\u00f6\u00dfe 50%n"), "x\udcff new\nline"])
 @pytest.mark.slow
 def test_a_path_may_have_any_name(tmp_path: Path, name: str) -> None:
     place = tmp_path / name

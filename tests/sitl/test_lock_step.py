@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from typer.testing import CliRunner
 
 from boatsim import read
@@ -349,7 +350,7 @@ def test_several_instances_run_in_processes_and_end_together(tmp_path: Path) -> 
 @pytest.mark.usefixtures("light")
 @pytest.mark.parametrize(
     ("vessel", "skid", "side", "wind"),
-    [("otter", True, 15.0, 2.0), ("joystick_boat", False, 10.0, 0.3)],
+    [long("otter", True, 15.0, 2.0), ("joystick_boat", False, 10.0, 0.3)],
 )
 def test_a_boat_drives_a_square_in_wind(
     vessel: str, skid: bool, side: float, wind: float, tmp_path: Path

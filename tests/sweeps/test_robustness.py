@@ -13,7 +13,7 @@ from boatsim.control.base import Controller
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class
 from boatsim.physics.vessel import Vessel, load_vessel
-from boatsim.simulate.vessel_margins import margins_on_vessel
+from boatsim.simulate import vessel_margins
 from boatsim.sweeps.robustness.benchmark import Robustness, run_benchmark
 from boatsim.sweeps.robustness.disturbances import DISTURBANCES
 from boatsim.sweeps.robustness.drawn_boats import draw_boats, drive_gains
@@ -121,10 +121,15 @@ def test_a_loop_of_enormous_gain_survives_no_delay() -> None:
         ("pid_autopilot", ("heavy", "narrow")),
     ],
 )
-def test_the_delay_survived_is_close_to_the_delay_margin(name: str, loads) -> None:
+def test_the_delay_survived_is_close_to_the_delay_margin(
+    name: str, loads, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # only the analytic margin is needed; tests of the margins compare it with the simulated one
+    monkeypatch.setattr(vessel_margins, "simulated_delay_margin", lambda *_: float("nan"))
     vessel = boat(*loads)
-    margin = min(row.delay_s for row in margins_on_vessel(controllers(name)[name], vessel))
-    ladder = (margin * np.linspace(0.7, 1.1, 9)).tolist()
+    rows = vessel_margins.margins_on_vessel(controllers(name)[name], vessel)
+    margin = min(row.delay_s for row in rows)
+    ladder = (margin * np.linspace(0.7, 1.1, 5)).tolist()
     result = run_benchmark(
         controllers(name), vessel, FEW, spread=0.0, ladders={"delay": ladder}
     ).ladders[0]

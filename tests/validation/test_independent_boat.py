@@ -100,6 +100,8 @@ REPEATED = {
     "cubic_damping",
     "forward_speed_damping",
     "lateral_centre_shift",
+    "sway_yaw_coupling",
+    "thrust_gain_error",
 }
 
 

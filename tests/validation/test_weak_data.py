@@ -112,7 +112,7 @@ EFFECTS = {
 
 
 @pytest.mark.parametrize("seconds", [6.0, long(12.0)])
-@pytest.mark.parametrize("case", few(EFFECTS, 0, 3))
+@pytest.mark.parametrize("case", few(EFFECTS, 0, 2))
 def test_a_short_run_names_what_is_there_or_nothing(
     case: str, seconds: float, tmp_path: Path
 ) -> None:

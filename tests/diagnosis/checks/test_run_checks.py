@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from alike import long
+from alike import long, slow
 from answers import diagnosed
 from real_boat import Real, recorded
 from typer.testing import CliRunner
@@ -43,6 +43,17 @@ LINES = [
     for name in FAULTS
     if name not in ("position held", "outliers in bursts", "gaps bridged", "clock stalls")
 ]
+
+
+# Other faults of the same columns have lines of the same form.
+REPEATED = ("y to port alone", "x and y exchanged", "thrusters exchanged", "heading turned 90 deg")
+
+
+def marked_line(name: str) -> Any:
+    """Return a fault whose line is tested, among the slow or long tests if it takes longer."""
+    if name in QUICK:
+        return name
+    return long(name) if name in REPEATED else slow(name)
 
 
 def columns_of(recording: Recording) -> Columns:
@@ -83,9 +94,7 @@ def test_each_fault_is_found_and_named(title: str, tmp_path: Path) -> None:
     assert any(c.isdigit() for c in found[0]["evidence"])
 
 
-@pytest.mark.parametrize(
-    "title", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in LINES]
-)
+@pytest.mark.parametrize("title", [marked_line(name) for name in LINES])
 def test_the_line_written_into_the_recording_toml_puts_it_right(title: str, tmp_path: Path) -> None:
     logs = good()
     paths = files(tmp_path, [FAULTS[title].apply(log, BOAT) for log in logs])

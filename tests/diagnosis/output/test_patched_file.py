@@ -90,7 +90,7 @@ def recalibrated(problem: Problem, by: float) -> Fit:
     )
 
 
-@pytest.mark.parametrize("name", few(content.shipped_content_names("vessel"), 1, 6))
+@pytest.mark.parametrize("name", few(content.shipped_content_names("vessel"), 1, 3))
 def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_path: Path) -> None:
     boat = vessel.load_vessel(name)
     problem = problem_of(boat)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from real_boat import FURTHER, Real, recorded, waves
 from scipy import signal
 from scipy.interpolate import CubicSpline
@@ -103,7 +104,7 @@ def diagnosed(folder: Path, real: Real) -> dict[str, Any]:
     ("real", "wanted"),
     [
         (Real(scale=(1.06, 0.95)), {"camera_scale": {"x_fraction": 0.06, "y_fraction": -0.05}}),
-        (
+        long(
             Real(compass=(0.0, 0.1, -0.08)),
             {"heading_deviation": {"cos_rad": 0.1, "sin_rad": -0.08}},
         ),

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import long
 from scipy.integrate import quad
 from scipy.special import exp1
 
@@ -214,7 +215,7 @@ def test_sway_force_of_a_short_sea_is_the_integral_over_the_spectrum(period: flo
     assert found == pytest.approx(whole, rel=0.08)
 
 
-@SHORT
+@pytest.mark.parametrize("period", [long(2.5), long(1.5), 1.0])
 @pytest.mark.slow
 def test_roll_moment_converges_when_the_cut_rises(period: float) -> None:
     modal = 2 * pi / period

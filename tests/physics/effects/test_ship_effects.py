@@ -425,7 +425,7 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
                 "speed_scaled_steering": {"hull_sway": 1.0, "rudder_sway": 0.8, "rudder_yaw": 0.8},
             },
         ),
-        slow((Real(rate=0.06), {"steering_rate_limit": {"rate_radps": 0.06}})),
+        long(Real(rate=0.06), {"steering_rate_limit": {"rate_radps": 0.06}}),
     ],
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case) or "nothing",
 )

@@ -90,7 +90,7 @@ def engine_states(vessel: Vessel) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.parametrize("name", ["joystick_boat", long("otter"), "jet_ski"])
+@pytest.mark.parametrize("name", ["joystick_boat", long("otter"), long("jet_ski")])
 @pytest.mark.slow
 def test_simulations_give_the_numbers_of_numba_to_the_last_bit(
     name: str, monkeypatch: pytest.MonkeyPatch

@@ -9,6 +9,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
+from alike import long
 from scipy.integrate import quad
 
 import boatsim
@@ -243,7 +244,7 @@ def replace_effect(boat: Vessel, effect: IrregularSea) -> Vessel:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("spectrum", ["bretschneider", "jonswap"])
+@pytest.mark.parametrize("spectrum", [long("bretschneider"), "jonswap"])
 def test_rms_of_the_roll_in_a_sea_is_that_of_linear_theory(tmp_path: Path, spectrum: str) -> None:
     """A box that only rolls: |H|^2 S integrated over the frequencies."""
     text = boats.ROLL + (
