@@ -30,18 +30,18 @@ def made(name: str, **settings: float) -> Controller:
     return controller
 
 
-def tuned(seed: int = 1, budget: int = 8) -> Tuning:
-    """A PID controller whose yaw gains are a quarter of the usual ones, under a delay."""
-    slow = made("pid_autopilot", kp=0.16, ki=0.025, kd=0.325)
-    gains = [("kp", None, None), ("kd", None, 2.0)]
+def tuned(seed: int = 1, budget: int = 6) -> Tuning:
+    """A PID controller with hardly any damping in yaw, under a delay."""
+    slow = made("pid_autopilot", ki=0.002, kd=0.2)
+    gains = [("kd", None, 2.0)]
     boat = load_vessel("joystick_boat")
     return tune("pid_autopilot", slow, boat, gains, DELAY, FEW, seed, budget=budget)
 
 
 @pytest.mark.slow
-def test_weak_gains_become_stronger_and_the_errors_of_unseen_boats_smaller(tmp_path: Path) -> None:
+def test_damping_is_found_and_the_errors_of_unseen_boats_become_smaller(tmp_path: Path) -> None:
     found = tuned()
-    assert found.is_better and found.designs == 8
+    assert found.is_better and found.designs == 6
     assert found.best.cost < 0.8 * found.start.cost
     before, after = found.start.results[0].errors, found.best.results[0].errors
     yaw = [signal.goal for signal in found.signals].index("yaw_radps")
@@ -49,25 +49,24 @@ def test_weak_gains_become_stronger_and_the_errors_of_unseen_boats_smaller(tmp_p
     assert [one.condition.words for one in found.best.results] == ["none", "delay 0.2 s"]
     for gain in found.ranges:
         assert gain.low <= found.best.gains[gain.name] <= gain.high
-    former = made("pid_autopilot", kp=0.16, ki=0.025, kd=0.325)
+    former = made("pid_autopilot", ki=0.002, kd=0.2)
     write_tuning(found, "pid_autopilot", former, tmp_path)
     table = tomllib.loads((tmp_path / TABLE).read_text())["controller"]
-    assert table == {"use": "pid_autopilot", "ki": 0.025, **found.best.gains}
+    assert table == {"use": "pid_autopilot", "ki": 0.002, **found.best.gains}
     boat = load_vessel("joystick_boat")
     scenario = Scenario.from_settings(vessel=boat, name="tuned", controller=table, duration=1.0)
     assert scenario.controller == found.controller
     content = json.loads((tmp_path / JSON).read_text())
     assert content["tuned"]["cost"] == pytest.approx(found.best.cost)
     gains, errors = tuning_tables(found)
-    assert [row[0] for row in gains.rows] == ["kp [1/s^2]", "kd [1/s]"]
+    assert [row[0] for row in gains.rows] == ["kd [1/s]"]
     assert len(errors.rows) == 2
 
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_gains_and_another_seed_other_designs() -> None:
     first, again, other = tuned(budget=4), tuned(budget=4), tuned(seed=2, budget=4)
-    assert again.best == first.best or again.best.gains == first.best.gains
-    assert again.best.cost == first.best.cost
+    assert (again.best.gains, again.best.cost) == (first.best.gains, first.best.cost)
     assert other.best.cost != first.best.cost
 
 

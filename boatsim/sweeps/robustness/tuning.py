@@ -190,6 +190,9 @@ def tune(
     designs = [search.judged(former, drawn)]
 
     def cost(gains_by_name: Mapping[str, float]) -> float:
+        for known in designs:
+            if known.gains == gains_by_name:
+                return known.cost
         report("closed loops", len(designs) / (budget + 2), f"cost {_best(designs).cost:.3g}")
         designs.append(search.judged(gains_by_name, drawn))
         return designs[-1].cost
@@ -374,5 +377,6 @@ def _descend(
         x,
         method="Nelder-Mead",
         bounds=bounds,
-        options={"maxfev": count, "xatol": 1e-3, "fatol": 1e-4},
+        # the first one is known
+        options={"maxfev": count + 1, "xatol": 1e-3, "fatol": 1e-4},
     )
