@@ -10,7 +10,7 @@ import numpy as np
 from boatsim.control.base import Estimate, Sense, clip, wrap
 from boatsim.control.guidance import LAWS, Guidance, LineOfSight
 from boatsim.control.passive_observer import PassiveObserver
-from boatsim.control.paths import Path, speed_profile
+from boatsim.control.paths import Path, PathPoint, speed_profile
 from boatsim.control.planned_path import PlannedPath
 from boatsim.control.thrust_allocation import ThrustAllocator, with_weights
 from boatsim.control.vessel_model import ModelBasedController, VesselModel
@@ -18,7 +18,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import UNSET, param
 
 GRAVITY = 9.81  # [m/s^2]
-# Froude number of the default speed, 1 m/s for a boat of 2.5 m: hardly any waves of its own, so
+# Froude number of the default speed, 1 m/s for a boat of 2.5 m: it makes hardly any waves, so
 # that the drag is small and the thrusters have reserves for steering
 CRUISE = 0.2
 # Lengths of the vessel. The literature uses 2 to 5; docs/path_following.md shows the effect.
@@ -157,6 +157,7 @@ class Los(PlannedPath, ModelBasedController):
         """Reset guidance, observer, integral actions and thrusters."""
         self._started = False
         self._along = 0.0
+        self._there = PathPoint(0.0, 0.0, 0.0, 0.0)  # foot point on the path
         self._wanted_speed = 0.0
         self._held = np.zeros(3)  # integral actions X, 0, N
         self._given = np.zeros(3)
@@ -191,6 +192,7 @@ class Los(PlannedPath, ModelBasedController):
         else:
             self._observer.step(measured, self._given)
             self._along = self._path.follow(sense.x, sense.y, self._along)
+        self._there = self._path.point(self._along)
         u, v, r = self._velocity(sense)
         self._guide(sense, u, v)
         self._advance_speed(goal)
@@ -207,7 +209,7 @@ class Los(PlannedPath, ModelBasedController):
 
     def _guide(self, sense: Sense, u: float, v: float) -> None:
         """Advance the guidance; near a stop the heading turns to that of the end of the path."""
-        there = self._path.point(self._along)
+        there = self._there
         course, speed = sense.psi + atan2(v, max(u, 1e-9)), hypot(max(u, 0.0), v)
         found = self._guidance.step(there, sense.x, sense.y, course, speed, self.period)
         if self.end == "stop":
@@ -263,7 +265,7 @@ class Los(PlannedPath, ModelBasedController):
         """Return the foot point on the path, heading and speed to steer, and the crab angle."""
         if self._model is None:
             return {}
-        there = self._path.point(self._along)
+        there = self._there
         values = {
             "reference_x_m": there.x,
             "reference_y_m": there.y,

@@ -1,7 +1,7 @@
 """Linear-quadratic regulator with integral action (LQI) of yaw rate and surge speed."""
 
 from dataclasses import dataclass
-from math import isnan
+from math import isnan, sqrt
 from typing import Any, ClassVar
 
 from boatsim.control.allocation import HEADING, command_outboards, thrust_difference_for_sway
@@ -93,7 +93,8 @@ class Lqi(LagJoystick):
     F is the modelled force of the actuators, a first-order lag. The gains minimise the integral of
     the squared error integral and of the squared command for the model I x' = F - d x; its numbers
     are the nominal inertias and the damping `yaw_damping`, `surge_damping`. The weight of the
-    command follows from the pole. Sway is open-loop thrust.
+    command is such that the natural frequency is the geometric mean of bandwidth and pole. Sway is
+    open-loop thrust.
     """
 
     words: ClassVar[str] = (
@@ -136,8 +137,10 @@ class Lqi(LagJoystick):
         super().derive_gains()
         lag = self.motor_lag + self.command_delay
         axes = (("yaw", self.inertia, self.yaw_damping), ("surge", self.mass, self.surge_damping))
+        # one pair of poles instead of those of an observer and of the response: between both
+        frequency = sqrt(self.bandwidth * self.pole)
         for axis, inertia, damping in axes:
-            gains = integral_gains(inertia, damping, lag, self.period, self.pole)
+            gains = integral_gains(inertia, damping, lag, self.period, frequency)
             for name, value in gains._asdict().items():
                 if getattr(self, f"{axis}_{name}") is UNSET:
                     setattr(self, f"{axis}_{name}", value)
