@@ -118,8 +118,11 @@ class Dock(PlannedPath, DynamicPositioning):
     def estimates(self) -> dict[str, Estimate]:
         """Return those of dynamic positioning, and the course of the path, for the log."""
         found = super().estimates()
-        if found and self._started:
-            course = self._path.point(self._along).course
-            found["reference_course_rad"] = Estimate(course, nan, nan)
-            found["along_track_m"] = Estimate(self._along, nan, nan)
+        if not found:
+            return found
+        course, along = 0.0, 0.0
+        if self._started:
+            course, along = self._path.point(self._along).course, self._along
+        found["reference_course_rad"] = Estimate(course, nan, nan)
+        found["along_track_m"] = Estimate(along, nan, nan)
         return found
