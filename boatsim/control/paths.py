@@ -601,18 +601,6 @@ class SpeedProfile:
         """
         return sqrt(float(np.interp(along, self.along, self.speed**2)))
 
-    def acceleration(self, along: float) -> float:
-        """Return the change of the speed in time at a distance along the path [m/s^2].
-
-        Args:
-            along: Distance from the start [m].
-        """
-        index = int(np.searchsorted(self.along, along, side="right")) - 1
-        if not 0 <= index < len(self.along) - 1:
-            return 0.0
-        squares = self.speed[index : index + 2] ** 2
-        return float(0.5 * (squares[1] - squares[0]) / (self.along[index + 1] - self.along[index]))
-
 
 def speed_profile(
     path: Path,
@@ -620,7 +608,6 @@ def speed_profile(
     turn_rate: float,
     acceleration: float,
     end_speed: float = inf,
-    start_speed: float = inf,
 ) -> SpeedProfile:
     """Return the largest speed along a path for limits of turn rate and acceleration.
 
@@ -631,7 +618,6 @@ def speed_profile(
             curvature, and at least a tenth of the largest speed.
         acceleration: Largest acceleration and deceleration [m/s^2].
         end_speed: Largest speed at the end [m/s].
-        start_speed: Largest speed at the start [m/s].
     """
     along = np.linspace(0.0, path.length, PROFILE_SAMPLES)
     along = np.union1d(along, [clip(at, 0.0, path.length) for at, _ in path.corners])
@@ -643,7 +629,7 @@ def speed_profile(
         index = int(np.searchsorted(along, at))
         allowed[index] = min(allowed[index], turn_rate * radius)
     allowed = np.maximum(allowed, SLOWEST_SHARE * speed)
-    allowed[0], allowed[-1] = min(allowed[0], start_speed), min(allowed[-1], end_speed)
+    allowed[-1] = min(allowed[-1], end_speed)
     squares = allowed**2
     room = 2.0 * acceleration * np.diff(along)
     for i in range(len(along) - 1):
