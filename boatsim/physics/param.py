@@ -247,6 +247,8 @@ def _wrong_type(value: object, declared: object) -> str:
         return "a name or a list of names"
     if declared == dict[str, float] and not _is_table_of_numbers(value):
         return "a table of numbers"
+    if declared == Sequence[Sequence[float]] and not _is_list_of_points(value):
+        return "a list of points, each a list of numbers"
     return ""
 
 
@@ -260,6 +262,17 @@ def _is_table_of_numbers(value: object) -> bool:
     if not isinstance(value, Mapping):
         return False
     return all(type(one) in (int, float) and abs(one) <= LARGEST_FLOAT for one in value.values())
+
+
+def _is_list_of_points(value: object) -> bool:
+    if not isinstance(value, list | tuple):
+        return False
+    for point in value:
+        if not isinstance(point, list | tuple):
+            return False
+        if not all(type(one) in (int, float) and abs(one) <= LARGEST_FLOAT for one in point):
+            return False
+    return True
 
 
 @cache
