@@ -91,6 +91,7 @@ class Adrc(LagJoystick):
     words: ClassVar[str] = (
         "active disturbance rejection (extended-state observer) on the joystick's allocation"
     )
+    tuned: ClassVar[tuple[str, ...]] = ("bandwidth", "pole")
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
 

@@ -90,5 +90,6 @@ class Indi(LagJoystick):
     words: ClassVar[str] = (
         "incremental nonlinear dynamic inversion with actuator model on the joystick's allocation"
     )
+    tuned: ClassVar[tuple[str, ...]] = ("bandwidth", "pole")
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
