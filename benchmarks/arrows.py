@@ -184,6 +184,7 @@ COLOURS = (
     "#a3722f",
     "#5c8a4a",
     "#8a5a7a",
+    "#2f6f5b",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

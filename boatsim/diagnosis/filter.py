@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
@@ -154,8 +155,8 @@ class Drift(NamedTuple):
 class FreeRunStarts(NamedTuple):
     """First and last rows of the free runs over a recording, and the states they begin with."""
 
-    starts: Array  # (runs,) integers
-    ends: Array  # (runs,) integers
+    starts: NDArray[np.int64]  # (runs,)
+    ends: NDArray[np.int64]  # (runs,)
     states: Array  # (runs, 2 NQ) smoothed joint coordinates and their rates
     drifts: tuple[Drift, ...]
 

@@ -46,7 +46,7 @@ def find_compiler() -> WasmCompiler:
             continue
         return compiler
     raise NoWasmCompiler(
-        "no compiler for WebAssembly: install the extra boatsim[wasm], or clang with wasm-ld, or zig"
+        "no compiler for WebAssembly: install boatsim[wasm], or clang with wasm-ld, or zig"
     )
 
 
@@ -90,7 +90,7 @@ def _build(compiler: WasmCompiler, source: str) -> bytes:
         place = Path(folder)
         text, object_file, module = (place / f"program.{end}" for end in ("c", "o", "wasm"))
         text.write_text(source, encoding="utf-8")
-        # Zig keeps files of its own, which go into this folder too.
+        # Zig stores files, which go into this folder too.
         cache = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         include = ("-isystem", str(HEADERS))
         _run([*compiler.compile, *FLAGS, *include, "-c", str(text), "-o", str(object_file)], cache)

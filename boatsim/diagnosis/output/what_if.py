@@ -1,14 +1,15 @@
 """Collects what the "What if" section of a report needs from a diagnosis."""
 
-from collections.abc import Sequence
-
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from boatsim.diagnosis.answer.described_terms import factors_in_words
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.schema import Family
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.free_runs import FAMILIES as SIGNALS_OF_FAMILY
 from boatsim.diagnosis.free_runs import free_run_horizon
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -62,8 +63,18 @@ def collect_what_if(found: Diagnosis, compiler: WasmCompiler) -> WhatIf | None:
         effects=tuple(_adjustable_effects(found)),
         links=problem.links,
         switches=program.effect_switches(random),
+        families=_recorded_families(signals),
         recordings=tuple(recordings),
     )
+
+
+def _recorded_families(signals: Mapping[str, int]) -> dict[Family, Sequence[str]]:
+    """Return the families of which any signal was recorded, with these signals."""
+    found = dict[Family, Sequence[str]]()
+    for family in FAMILIES:
+        if recorded := [name for name in SIGNALS_OF_FAMILY[family] if name in signals]:
+            found[family] = recorded
+    return found
 
 
 def _coordinates(mapped: MappedRecording) -> dict[str, int]:
@@ -190,5 +201,3 @@ def _slider_range(parameter: FreeParameter, value: float) -> tuple[float, float]
     low = max(parameter.low, min(value, parameter.mean) - reach)
     high = min(parameter.high, max(value, parameter.mean) + reach)
     return float(np.minimum(low, value)), float(np.maximum(high, value))
-
-

@@ -18,6 +18,7 @@ from boatsim.diagnosis.report.what_if import (
     LAYOUT_BYTES,
     MOST_BYTES,
     SCRIPT,
+    TOO_LARGE,
     WhatIf,
     template_values,
     within_size,
@@ -75,16 +76,20 @@ def report_html(
         what_if: Content of the section that repeats free runs; None for none. As many free runs of
             it are shown as keep the page below `what_if.MOST_BYTES`.
     """
+    script, values, note = "", None, ""
     if what_if is not None:
         size = len(report_html(findings, sections).encode())
-        what_if = within_size(what_if, MOST_BYTES - size - LAYOUT_BYTES)
-    script, values = "", None
-    if what_if is not None:
-        script, values = SCRIPT.read_text(encoding="utf-8"), template_values(what_if)
+        shown = within_size(what_if, MOST_BYTES - size - LAYOUT_BYTES)
+        if shown is None:
+            note = TOO_LARGE
+        else:
+            script = SCRIPT.read_text(encoding="utf-8")
+            values = template_values(shown, sum(len(one.starts) for one in what_if.recordings))
     return render_template(
         TEMPLATE,
         script,
         what_if=values,
+        what_if_note=note,
         f=findings,
         verdict=_verdict(findings),
         answer=findings.answer,

@@ -1,5 +1,6 @@
 """The section of a report that repeats free runs in the browser while sliders move."""
 
+import json
 import zlib
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
@@ -9,19 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.free_runs import FAMILIES
+from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.schema import Family
 from boatsim.physics.base import Array
-from boatsim.view.formatting import convenient_unit, format_number, format_unit
+from boatsim.view.formatting import IN_DEGREES, STEPS, convenient_unit, format_number, format_unit
 
 SCRIPT = Path(__file__).parent / "templates" / "what_if.js"
+STYLE = Path(__file__).parent / "templates" / "what_if.css"
+TOO_LARGE = (
+    "This report has no sliders, because with a single free run it would be larger than 1 MB."
+)
 MOST_BYTES = 1_000_000  # of a report with this section
 LAYOUT_BYTES = 40_000  # of the section without its content: script, template, escaped characters
-FAMILY_WORDS = {
-    "position_rms_m": ("position", "m"),
-    "heading_rms_rad": ("heading", "rad"),
-    "roll_rms_rad": ("roll", "rad"),
-    "heave_rms_m": ("heave", "m"),
-}
 SIGNAL_WORDS = {  # column -> what its plot shows, and its SI unit
     "x_m": ("position x", "m"),
     "y_m": ("position y", "m"),
@@ -168,6 +168,7 @@ class WhatIf:
             they write their values.
         links: Places in the parameter values that inherit a value, and of that value.
         switches: (effects,) switches of the program without any candidate.
+        families: Signals whose deviations have one rms error, by key of `fit` in diagnosis.json.
         recordings: Held-out recordings.
     """
 
@@ -179,18 +180,20 @@ class WhatIf:
     effects: tuple[AdjustableEffect, ...]
     links: tuple[tuple[int, int], ...]
     switches: Array
+    families: Mapping[Family, Sequence[str]]
     recordings: tuple[ReplayedRecording, ...]
 
 
-def template_values(what_if: WhatIf) -> dict[str, object]:
+def template_values(what_if: WhatIf, runs: int) -> dict[str, object]:
     """Return the values that the template of the section uses.
 
     Args:
         what_if: Program, effects and recordings.
+        runs: Number of free runs over all held-out recordings, of which it may have fewer.
     """
     numbers = _PackedNumbers()
     content = _content(what_if, numbers)
-    families = [FAMILY_WORDS[family][0] for family in _families(what_if)]
+    families = [FAMILIES[family][0] for family in what_if.families]
     others = [e for e in what_if.effects if not e.found and not e.coefficients]
     track = {"x_m", "y_m"} <= what_if.signals.keys()
     plots = []
@@ -198,8 +201,13 @@ def template_values(what_if: WhatIf) -> dict[str, object]:
         if track and name in ("x_m", "y_m"):
             continue
         plots.append((name, _title(what_if, name)))
+    kept, cut = sum(len(one.starts) for one in what_if.recordings), ""
+    if kept < runs:
+        cut = f"So that this page stays below 1 MB, it has the first {kept} of {runs} free runs."
     return {
         "about": ABOUT,
+        "cut": cut,
+        "style": STYLE.read_text(encoding="utf-8"),
         "horizon": format_number(what_if.horizon),
         "families": families,
         "track": track,
@@ -213,43 +221,55 @@ def template_values(what_if: WhatIf) -> dict[str, object]:
 
 
 def within_size(what_if: WhatIf, size: int) -> WhatIf | None:
-    """Return a section whose content takes at most some bytes, with fewer recordings or shorter ones.
+    """Return a section whose content takes at most some bytes, with fewer free runs if needed.
 
     Args:
         what_if: Program, effects and recordings.
         size: Largest size of its content [bytes].
 
     Returns:
-        The section with as many free runs as fit; None if not a single one fits.
+        The section with the first free runs that fit; None if not a single one fits.
     """
-    counts = [len(recording.starts) for recording in what_if.recordings]
-    most = sum(counts)
-    low, high = 0, most  # numbers of free runs that fit, and that may fit
+    left = size - _content_size(replace(what_if, recordings=()))
+    kept = list[ReplayedRecording]()
+    for recording in what_if.recordings:
+        shown = _recording_within_size(what_if, recording, left)
+        if shown is None:
+            break
+        kept.append(shown)
+        if shown is not recording:
+            break
+        left -= _recording_size(what_if, recording)
+    return replace(what_if, recordings=tuple(kept)) if kept else None
+
+
+def _recording_within_size(
+    what_if: WhatIf, recording: ReplayedRecording, size: int
+) -> ReplayedRecording | None:
+    """Return a recording with as many free runs as fit; None if not a single one fits."""
+    most = len(recording.starts)
+    if _recording_size(what_if, recording) <= size:
+        return recording
+    low, high = 0, most - 1  # numbers of free runs that fit, and that may fit
     while low < high:
         middle = (low + high + 1) // 2
-        if _content_size(_with_runs(what_if, middle)) <= size:
+        if _recording_size(what_if, recording.first_runs(middle)) <= size:
             low = middle
         else:
             high = middle - 1
-    return _with_runs(what_if, low) if low else None
+    return recording.first_runs(low) if low else None
 
 
-def _with_runs(what_if: WhatIf, count: int) -> WhatIf:
-    """Return the section with its first free runs, over all recordings."""
-    kept, left = list[ReplayedRecording](), count
-    for recording in what_if.recordings:
-        if left <= 0:
-            break
-        if left < len(recording.starts):
-            recording = recording.first_runs(left)
-        kept.append(recording)
-        left -= len(recording.starts)
-    return replace(what_if, recordings=tuple(kept))
+def _recording_size(what_if: WhatIf, recording: ReplayedRecording) -> int:
+    """Size of a recording in the page [bytes]: compressed alone it is not smaller."""
+    alone = replace(what_if, program=b"", effects=(), recordings=(recording,))
+    return _content_size(alone)
 
 
 def _content_size(what_if: WhatIf) -> int:
-    values = template_values(what_if)
-    return len(str(values["numbers"])) + len(str(values["content"]))
+    numbers = _PackedNumbers()
+    content = _content(what_if, numbers)
+    return len(numbers.text) + len(json.dumps(content))
 
 
 class _PackedNumbers:
@@ -304,9 +324,8 @@ def _content(what_if: WhatIf, numbers: _PackedNumbers) -> dict[str, Any]:
         unit, factor = _signal_unit(what_if, name)
         quantities[name] = {"unit": unit, "factor": factor}
     families = []
-    for family, signals in _families(what_if).items():
-        unit, factor = _displayed_unit(FAMILY_WORDS[family][1])
-        families.append({"signals": signals, "unit": unit, "factor": factor})
+    for family, signals in what_if.families.items():
+        families.append({"signals": signals, "units": _units(FAMILIES[family][1])})
     return {
         "nq": what_if.nq,
         "signals": dict(what_if.signals),
@@ -325,12 +344,10 @@ def _effect_content(effect: AdjustableEffect) -> dict[str, Any]:
     """Return an effect with its sliders as JSON."""
     parameters = []
     for slider in effect.parameters:
-        unit, factor = _displayed_unit(slider.unit, max(abs(slider.low), abs(slider.high)))
         parameters.append(
             {
                 "words": slider.words,
-                "unit": unit,
-                "factor": factor,
+                "units": _units(slider.unit),
                 "low": slider.low,
                 "high": slider.high,
                 "off": slider.off,
@@ -351,19 +368,16 @@ def _effect_content(effect: AdjustableEffect) -> dict[str, Any]:
     }
 
 
-def _families(what_if: WhatIf) -> dict[str, Sequence[str]]:
-    """Return the families of which any signal was recorded, with these signals."""
-    found = dict[str, Sequence[str]]()
-    for family, signals in FAMILIES.items():
-        if recorded := [name for name in signals if name in what_if.signals]:
-            found[family] = recorded
-    return found
+def _units(unit: str) -> list[tuple[float, str, float]]:
+    """Return convenient units of a quantity, the largest first.
 
-
-def _displayed_unit(unit: str, largest: float = 1.0) -> tuple[str, float]:
-    """Return the unit in which a quantity is shown, and its value per SI unit."""
-    name, factor = convenient_unit(unit, largest)
-    return format_unit(name), factor
+    Each has the smallest size [SI unit] from which it is used, its name, and its value per SI unit.
+    """
+    steps = STEPS.get(unit)
+    if steps is None or unit in IN_DEGREES:
+        name, factor = convenient_unit(unit, 1.0)
+        return [(0.0, format_unit(name), factor)]
+    return [(least, format_unit(name), 1.0 / size) for least, size, name in steps]
 
 
 def _signal_unit(what_if: WhatIf, name: str) -> tuple[str, float]:
@@ -373,7 +387,7 @@ def _signal_unit(what_if: WhatIf, name: str) -> tuple[str, float]:
         recorded = recording.measured.get(name, np.zeros(0))
         finite = recorded[np.isfinite(recorded)]
         largest = max([largest, *np.abs(finite).tolist()])
-    return _displayed_unit(SIGNAL_WORDS[name][1], largest)
+    return convenient_unit(SIGNAL_WORDS[name][1], largest)
 
 
 def _title(what_if: WhatIf, name: str) -> str:

@@ -114,18 +114,27 @@ function formatted(value, unit) {
   const digits = value === 0 ? 0 : Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(Math.abs(value)))));
   return value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212") + (unit.startsWith("\u00b0") || !unit ? "" : "\u00a0") + unit;
 }
-const shown = (value, quantity) => formatted(value * quantity.factor, quantity.unit);
+// A value with its most convenient unit: [smallest size, name, value per SI unit], the largest unit first.
+function shown(value, { units }) {
+  const [, unit, factor] = units.find(([least]) => Math.abs(value) >= least) || units[units.length - 1];
+  return formatted(value * factor, unit);
+}
 
 // Drawings -----------------------------------------------------------------------------------------------------------
 
-function colour(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
+const colours = new Map(); // of the style, read once for each colour scheme
+function colour(name) {
+  if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return colours.get(name);
+}
 // A drawing with equal scales (a track) or free ones (a signal over time). Lines: [look, xs, ys].
 function draw(canvas, lines, equal, titles) {
-  const ratio = window.devicePixelRatio || 1, wide = canvas.clientWidth, high = canvas.clientHeight;
-  canvas.width = Math.round(wide * ratio);
-  canvas.height = Math.round(high * ratio);
+  const ratio = window.devicePixelRatio || 1, [wide, high] = canvas.size || [canvas.clientWidth, canvas.clientHeight];
+  const pixels = [Math.round(wide * ratio), Math.round(high * ratio)];
+  if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
   const pen = canvas.getContext("2d"), ghost = lines.filter(line => line[0] === "--recorded");
-  pen.scale(ratio, ratio);
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, wide, high);
   let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const [, xs, ys] of ghost.length ? ghost : lines)
     xs.forEach((x, i) => {
@@ -133,7 +142,7 @@ function draw(canvas, lines, equal, titles) {
       [x0, x1, y0, y1] = [Math.min(x0, x), Math.max(x1, x), Math.min(y0, ys[i]), Math.max(y1, ys[i])];
     });
   if (!(x1 >= x0)) return;
-  const left = 46, bottom = 22, room = equal ? 0.25 : 0;
+  const left = 46, bottom = 22, room = equal ? 0.6 : 0;
   const pad = (a, b) => (b - a || 1) * room;
   [x0, x1] = [x0 - pad(x0, x1), x1 + pad(x0, x1)];
   const margin = (y1 - y0 || 1) * 0.25;
@@ -186,6 +195,9 @@ function draw(canvas, lines, equal, titles) {
 
 // The controls -------------------------------------------------------------------------------------------------------
 
+function setText(place, text) { // writing the same text would make the browser lay out the page again
+  if (place.textContent !== text) place.textContent = text;
+}
 function element(kind, properties, ...children) {
   const created = Object.assign(document.createElement(kind), properties);
   created.append(...children);
@@ -217,7 +229,7 @@ function build(model, simulations) {
         state[e].acts = true;
         changed();
       });
-      box.append(element("label", { className: "slider" }, element("span", { textContent: parameter.words }), value, input));
+      box.append(element("label", { className: "slider" }, element("span", { textContent: parameter.words }), input, value));
       own.sliders.push({ input, value, parameter });
     });
     rows[e] = own;
@@ -228,12 +240,17 @@ function build(model, simulations) {
       if (own.check) own.check.checked = state[e].acts;
       own.sliders.forEach(({ input, value, parameter }, k) => {
         const x = state[e].values[k], place = Math.round(STEPS * (x - parameter.low) / (parameter.high - parameter.low || 1));
-        if (document.activeElement !== input || Number(input.value) !== place) input.value = place;
-        value.textContent = state[e].acts ? shown(x, parameter) : "off";
-        input.setAttribute("aria-valuetext", value.textContent);
+        if (Number(input.value) !== place) input.value = place;
+        const text = state[e].acts ? shown(x, parameter) : "off";
+        if (value.textContent === text) return;
+        value.textContent = text;
+        input.setAttribute("aria-valuetext", text);
       });
     });
-    for (const button of root.querySelectorAll(".presets button")) button.setAttribute("aria-pressed", sameState(state, button.state));
+    for (const button of root.querySelectorAll(".presets button")) {
+      const pressed = String(sameState(state, button.state));
+      if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
+    }
   }
   function errorsOf(given) {
     const found = runsOf(chosen(), given);
@@ -246,7 +263,7 @@ function build(model, simulations) {
   }
   function showRuns() {
     const one = chosen(), { measured, times } = one;
-    model.families.forEach((family, f) => { $("tbody").rows[f].cells[1].textContent = shown(rms(runs, one, family.signals), family); });
+    model.families.forEach((family, f) => setText($("tbody").rows[f].cells[1], shown(rms(runs, one, family.signals), family)));
     const line = (name, factor = 1) => [measured[name].map(x => x * factor), joined(runs.map(run => run.channels[name].map(x => x * factor)))];
     const t = joined(runs.map(run => times.subarray(run.first, run.last + 1)));
     for (const canvas of root.querySelectorAll("canvas")) {
@@ -268,6 +285,10 @@ function build(model, simulations) {
     showState();
     showRuns();
   }
+  function announce() {
+    const errors = [...$("tbody").rows].map(row => `${row.cells[0].textContent} ${row.cells[1].textContent}`);
+    $("[role=status]").textContent = `Error now: ${errors.join(", ")}`;
+  }
   function changed() {
     if (dirty) return;
     dirty = true;
@@ -284,7 +305,7 @@ function build(model, simulations) {
   });
   for (const [words, given] of presets) {
     const button = element("button", { type: "button", textContent: words, state: given });
-    button.addEventListener("click", () => { state = structuredClone(given); changed(); });
+    button.addEventListener("click", () => { state = structuredClone(given); changed(); requestAnimationFrame(announce); });
     $(".presets").append(button);
   }
   model.effects.forEach((effect, e) => {
@@ -294,14 +315,19 @@ function build(model, simulations) {
   simulations.forEach((one, i) => $("#what-if-recording").append(element("option", { value: i, textContent: one.recording.name })));
   $("#what-if-recording").addEventListener("change", renew);
   $("#what-if-length").addEventListener("change", renew);
-  addEventListener("resize", changed);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
+  $(".panel").addEventListener("change", () => requestAnimationFrame(announce));
+  const sizes = new ResizeObserver(entries => {
+    for (const { target, contentRect } of entries) target.size = [contentRect.width, contentRect.height];
+    changed();
+  });
+  root.querySelectorAll("canvas").forEach(canvas => sizes.observe(canvas));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours.clear(); changed(); });
   $(".panel").hidden = false;
   showReferences();
   update();
   // For the console and for tests
   root.whatIf = { model, simulations, update, get runs() { return runs; }, get state() { return state; } };
-  $("[role=status]").textContent = "";
+  announce();
 }
 
 async function start() {
