@@ -20,7 +20,7 @@ from boatsim.diagnosis.report.what_if import (
     Slider,
     WhatIf,
 )
-from boatsim.physics.groups import without_group
+from boatsim.physics.groups import group_of, without_group
 from boatsim.view.formatting import name_in_words
 from boatsim.webassembly.compiler import WasmCompiler
 from boatsim.webassembly.program import compile_program
@@ -153,7 +153,9 @@ def _adjustable_effects(found: Diagnosis) -> list[AdjustableEffect]:
 
 def _adjustable_effect(found: Diagnosis, fit: Fit, name: str, identified: bool) -> AdjustableEffect:
     """Return a candidate with its sliders; one that is random has none."""
-    shown = name_in_words(name_without_prefixes(name))
+    shown = name_in_words(without_group(name_without_prefixes(name)))
+    if group := group_of(name):
+        shown = f"{shown} in group {group}"
     words = found.findings.words.get(name_without_prefixes(name), "")
     if name in found.ranking.described_terms:
         factors = factors_in_words(found.ranking.described_terms[name])
@@ -175,7 +177,9 @@ def _sliders(found: Diagnosis, fit: Fit, effect: str) -> tuple[Slider, ...]:
             words, unit = f"{parameter.effect}: {parameter.name}", ""
         elif not parameter.relative and parameter.effect == effect:
             about = type(found.problem.candidates[effect]).params()[parameter.name]
-            words, unit = about.words or parameter.name, about.unit
+            words, unit = parameter.name, about.unit
+            if about.words:
+                words = f"{words} ({about.words})"
         else:
             continue
         low, high = _slider_range(parameter, value)

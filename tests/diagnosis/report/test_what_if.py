@@ -10,8 +10,11 @@ from typing import Any
 import chrome
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import boatsim
+from boatsim.cli import diagnosis as commands
+from boatsim.cli.commands import app
 from boatsim.diagnosis.filter_arguments import rigid_body_values
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.output.files import write_diagnosis
@@ -40,9 +43,13 @@ FRAMES_PER_SECOND = 30
 class Made:
     """A diagnosis of simulated recordings, its section and the folder of its files."""
 
-    found: Diagnosis
+    diagnosis: boatsim.Diagnosis
     what_if: WhatIf
     folder: Path
+
+    @property
+    def found(self) -> Diagnosis:
+        return self.diagnosis.result
 
     @property
     def page(self) -> Path:
@@ -60,11 +67,11 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     for name in ("sway_1", "yaw_1", "yaw_3"):
         boatsim.run(f"joystick_boat/{name}_as_published", out=folder / name)
         recordings.append(folder / name / "camera.csv")
-    found = boatsim.diagnose(recordings[:2], hold_out=recordings[2:]).result
-    what_if = collect_what_if(found, compiler)
+    diagnosis = boatsim.diagnose(recordings[:2], hold_out=recordings[2:])
+    what_if = collect_what_if(diagnosis.result, compiler)
     assert what_if is not None
-    write_diagnosis(found, folder / "out", what_if)
-    return Made(found, what_if, folder / "out")
+    write_diagnosis(diagnosis.result, folder / "out", what_if)
+    return Made(diagnosis, what_if, folder / "out")
 
 
 @pytest.fixture(scope="module")
@@ -284,7 +291,7 @@ def test_the_report_stays_below_one_megabyte_and_equal_results_give_equal_bytes(
     made: Made, tmp_path: Path
 ) -> None:
     assert made.page.stat().st_size < MOST_BYTES
-    write_diagnosis(made.found, tmp_path / "again", collect_what_if(made.found, find_compiler()))
+    made.diagnosis.write(tmp_path / "again", what_if=True)
     assert (tmp_path / "again" / "report.html").read_bytes() == made.page.read_bytes()
     write_diagnosis(made.found, tmp_path / "plain")
     plain = (tmp_path / "plain" / "report.html").read_text(encoding="utf-8")
@@ -300,6 +307,23 @@ def test_the_report_stays_below_one_megabyte_and_equal_results_give_equal_bytes(
     page = tmp_path / "long" / "report.html"
     assert 0.7 * MOST_BYTES < page.stat().st_size < MOST_BYTES
     assert "stays below 1 MB" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_where_the_compiler_fails_on_a_vessel_the_other_files_are_written(
+    made: Made, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise NoWasmCompiler("zig: this law is too long")
+
+    monkeypatch.setattr(commands, "analyse", lambda *_, **__: made.found)
+    monkeypatch.setattr(commands, "collect_what_if", fail)
+    log = made.folder.parent / "yaw_1" / "camera.csv"
+    given = ["diagnose", str(log), "--what-if", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, given)
+    assert done.exit_code == 2 and "zig: this law is too long" in done.stderr
+    assert (tmp_path / "out" / "patched.toml").is_file()
+    assert "what-if" not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
