@@ -145,7 +145,7 @@ function draw(canvas, lines, equal, titles) {
   const left = 46, bottom = 22, room = equal ? 0.6 : 0;
   const pad = (a, b) => (b - a || 1) * room;
   [x0, x1] = [x0 - pad(x0, x1), x1 + pad(x0, x1)];
-  const margin = (y1 - y0 || 1) * 0.25;
+  const margin = (y1 - y0 || 1) * (equal ? room : 0.25);
   [y0, y1] = [y0 - margin, y1 + margin];
   let sx = (wide - left - 8) / (x1 - x0 || 1), sy = (high - bottom - 8) / (y1 - y0);
   if (equal) {
