@@ -28,6 +28,7 @@ from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.loading import open_recording, open_recording_parts
 from boatsim.diagnosis.output.files import write_diagnosis
+from boatsim.diagnosis.output.what_if import collect_what_if
 from boatsim.diagnosis.replay import join_free_runs, replay_recording
 from boatsim.diagnosis.report.notebook_views import (
     diagnosis_figure,
@@ -66,6 +67,7 @@ from boatsim.sweeps.plan import MOST_RUNS, make_plan
 from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import make_sampled_key
 from boatsim.sweeps.summary import Pair, Spread, compare_controllers, metric_statistics
+from boatsim.webassembly.compiler import find_compiler
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -238,15 +240,23 @@ class Diagnosis:
                 skill[name] = 1.0 - rms["patched"] / rms["recalibrated"]
         return skill
 
-    def write(self, folder: Name) -> None:
+    def write(self, folder: Name, what_if: bool = False) -> None:
         """Write the results of the diagnosis to files in a folder.
 
         They are report.html, report.md, diagnosis.json, patched.toml and diagnosis.rrd.
 
         Args:
             folder: Folder of the files; it is created if needed.
+            what_if: Whether report.html repeats free runs in the browser while sliders move, which
+                needs a compiler for WebAssembly, such as that of `boatsim[wasm]`.
+
+        Raises:
+            BadInput: There is no such compiler, or a law has no C form; nothing is written.
         """
-        write_diagnosis(self.result, Path(checked_name("folder", folder)))
+        section = None
+        if what_if:
+            section = collect_what_if(self.result, find_compiler())
+        write_diagnosis(self.result, Path(checked_name("folder", folder)), section)
 
     def __repr__(self) -> str:
         """Verdict and sentence; all results would fill pages."""

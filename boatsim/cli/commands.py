@@ -299,6 +299,13 @@ def demo(
     open_: Annotated[
         bool, typer.Option("--open", help="Open the report in a browser, if there is a display.")
     ] = False,
+    what_if: Annotated[
+        bool,
+        typer.Option(
+            "--what-if",
+            help="Add sliders to report.html that repeat the free runs; needs boatsim[wasm].",
+        ),
+    ] = False,
 ) -> int:
     """Simulate a boat with a hidden fault, find the fault from its recordings, write the report.
 
@@ -311,7 +318,7 @@ def demo(
     sys.stdout.flush()  # the imports below take seconds
     from boatsim.cli.demo import run_demo
 
-    return run_demo(out, open_)
+    return run_demo(out, open_, what_if)
 
 
 @app.command()
@@ -1118,6 +1125,13 @@ def diagnose(
             help="Change a setting of the diagnosis, such as select.odds=3. Repeatable.",
         ),
     ] = None,
+    what_if: Annotated[
+        bool,
+        typer.Option(
+            "--what-if",
+            help="Add sliders to report.html that repeat the free runs; needs boatsim[wasm].",
+        ),
+    ] = False,
     each: Annotated[
         bool,
         typer.Option(
@@ -1146,6 +1160,10 @@ def diagnose(
         raise BadInput(
             "--jobs and --ray apply only with --each, which diagnoses recordings separately"
         )
+    if each and what_if:
+        raise BadInput(
+            "--what-if does not apply with --each, which writes one table of all results"
+        )
     options = DiagnosisOptions(
         hold_out=tuple(map(str, held_out)),
         vessel=vessel,
@@ -1160,7 +1178,7 @@ def diagnose(
             from boatsim.cli.sweeping import diagnose_each
 
             return diagnose_each(runs, options, out, jobs, ray)
-        return commands.diagnose([recording_file(run) for run in runs], options, out)
+        return commands.diagnose([recording_file(run) for run in runs], options, out, what_if)
 
 
 @app.command()

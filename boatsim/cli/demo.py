@@ -12,6 +12,7 @@ from boatsim.cli.programs import typed_program
 from boatsim.cli.progress import report_stages
 from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.output.files import write_diagnosis
+from boatsim.diagnosis.output.what_if import collect_what_if
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.report.brief import summary_lines
@@ -26,6 +27,7 @@ from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario
 from boatsim.view.formatting import join_words, sentence_in_per_cent
 from boatsim.view.viewer import has_display
+from boatsim.webassembly.compiler import find_compiler
 
 FILE = "demo.toml"  # in the folder of the shipped scenarios
 MANOEUVRE = "turning_circle"  # simulated with the corrected model in the command that is printed
@@ -42,20 +44,22 @@ class DemoFile(Table):
     horizon: float | None = Field(default=None, gt=0)  # [s]
 
 
-def run_demo(out: Path, browser: bool) -> int:
+def run_demo(out: Path, browser: bool, what_if: bool = False) -> int:
     """Simulate recordings of a boat with a hidden fault, diagnose them and print the result.
 
     Args:
         out: Output folder of the report, with the recordings in a folder of their own.
         browser: Whether to open the report in a browser.
+        what_if: Whether report.html repeats free runs while sliders move.
 
     Returns:
         Exit code.
 
     Raises:
-        BadInput: demo.toml or a scenario cannot be used.
+        BadInput: demo.toml or a scenario cannot be used, or there is no compiler for sliders.
         OSError: A file cannot be written.
     """
+    compiler = find_compiler() if what_if else None
     path = content_root() / "scenarios" / FILE
     demo = validate_table(DemoFile, read_toml(path), FILE)
     recorded = {**demo.fit, **demo.hold_out}
@@ -80,7 +84,8 @@ def run_demo(out: Path, browser: bool) -> int:
     with report_stages() as report:
         found = analyse(fitted, recordings[len(fitted) :], horizon=demo.horizon, report=report)
     _print_now(["3. Writing the report."])
-    write_diagnosis(found, out)
+    section = collect_what_if(found, compiler) if compiler else None
+    write_diagnosis(found, out, section)
     _print_now(["", *summary_lines(found.findings), *_truth_lines(loaded, found), ""])
     _print_now(_next_lines(out, found.findings))
     if browser:

@@ -18,16 +18,19 @@ from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording, open_recording_parts
 from boatsim.diagnosis.log_check import correction_hint
 from boatsim.diagnosis.output.files import write_diagnosis
+from boatsim.diagnosis.output.what_if import collect_what_if
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import fit_noise_only, free_run_columns, replay_recording
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.errors import BadInput
 from boatsim.files import replace_file
+from boatsim.physics.native.declarations import NotTranslatable
 from boatsim.physics.signals import STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.sweeps.diagnoses import DiagnosisOptions
+from boatsim.webassembly.compiler import NoWasmCompiler, find_compiler
 
 # Shares of the work done when these stages start, by experience.
 WRITING = 0.97
@@ -35,21 +38,24 @@ RUNNING = 0.1
 FREE_RUN = 0.8
 
 
-def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
+def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path, what_if: bool = False) -> int:
     """Diagnose recordings together: identify missing effects, write the report, print a summary.
 
     Args:
         runs: Recordings.
         options: Options of the diagnosis.
         out: Output folder of diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd.
+        what_if: Whether report.html repeats free runs while sliders move.
 
     Returns:
         Exit code.
 
     Raises:
-        BadInput: An argument or a recording is wrong.
+        BadInput: An argument or a recording is wrong, or there is no compiler for sliders. Where
+            the compiler fails on this vessel, all files are written nevertheless, without sliders.
         OSError: The report cannot be written; the summary is printed nevertheless.
     """
+    compiler = find_compiler() if what_if else None  # before the long work
     held_out = list(map(Path, options.hold_out))
     load = list(options.load)
     with report_stages() as report:
@@ -70,9 +76,14 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
                 f"{error}{correction_hint(runs, held_out, options.vessel, load)}"
             ) from None
         report("writing the report", WRITING)
-        write_error = None
+        section, compiler_error, write_error = None, None, None
+        if compiler is not None:
+            try:
+                section = collect_what_if(found, compiler)
+            except (NotTranslatable, NoWasmCompiler) as error:
+                compiler_error = error
         try:
-            write_diagnosis(found, out)
+            write_diagnosis(found, out, section)
         except OSError as error:
             write_error = error
     for entry in found.findings.answer.get("log", []):
@@ -88,6 +99,10 @@ def diagnose(runs: list[Path], options: DiagnosisOptions, out: Path) -> int:
         files.append(NEXT_SCENARIO)
     files.append("diagnosis.rrd")
     print_lines([f"written to {out}: {', '.join(files)}"])
+    if compiler_error:
+        raise compiler_error
+    if what_if and section is None:
+        print_note("the report has no sliders, because there is no free run to repeat")
     return 0
 
 

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
@@ -142,6 +143,22 @@ class HullMotion(NamedTuple):
 
     decay_rate: float  # [1/s] of the fastest motion
     largest_step: float  # [s] with which Runge-Kutta follows its oscillations
+
+
+class Drift(NamedTuple):
+    """Drift of an instrument at the starts of free runs, from which it decays exponentially."""
+
+    effect: str  # name of the effect, whose parameter "time" is the decay time [s]
+    offsets: Array  # (runs, NQ) added to the recorded coordinates
+
+
+class FreeRunStarts(NamedTuple):
+    """First and last rows of the free runs over a recording, and the states they begin with."""
+
+    starts: NDArray[np.int64]  # (runs,)
+    ends: NDArray[np.int64]  # (runs,)
+    states: Array  # (runs, 2 NQ) smoothed joint coordinates and their rates
+    drifts: tuple[Drift, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -401,41 +418,55 @@ class MappedRecording:
     def _simulate_free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float
     ) -> list[tuple[int, Array]]:
-        starts, ends = free_run_segments(self.times, horizon)
-        if not starts:
+        begin = self.free_run_starts(values, on, levels, horizon)
+        if not len(begin.starts):
             return []
-        means = self.smooth(values, on, levels).means
         nq = self.program.module.NQ
-        out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
-        states = np.ascontiguousarray(means[starts, : 2 * nq])
+        out = np.full((len(begin.starts), len(self.times), 2 * nq), np.nan)
         self.program.estimation_functions.simulate_intervals(
             self.times_and_commands,
             self.config.free_run_step,
             VesselNumbers(rigid_body_values(values), values, on),
-            np.array(starts),
-            np.array(ends),
-            states,
+            begin.starts,
+            begin.ends,
+            begin.states,
             out,
         )
         runs = []
-        for simulated, begin, end in zip(out, starts, ends, strict=True):
-            runs.append((begin, simulated[begin : end + 1].copy()))
-        oscillators = 2 if self._oscillates(values, on) else 0
-        for effect, acts in zip(self.program.effects, on, strict=True):
-            if isinstance(effect, DriftingMeasurement) and acts:
-                decay_time = values[self.program.parameter_index(effect.name, "time")]
-                self._add_sensor_error(runs, means, decay_time, oscillators)
+        for simulated, first, last in zip(out, begin.starts, begin.ends, strict=True):
+            runs.append((int(first), simulated[first : last + 1].copy()))
+        for drift in begin.drifts:
+            decay_time = values[self.program.parameter_index(drift.effect, "time")]
+            for (first, channels), offset in zip(runs, drift.offsets, strict=True):
+                since = self.times[first : first + len(channels)] - self.times[first]
+                channels[:, :nq] += offset * np.exp(-since / decay_time)[:, None]
         return runs
 
-    def _add_sensor_error(
-        self, runs: list[tuple[int, Array]], means: Array, decay_time: float, oscillators: int
-    ) -> None:
-        """Add the expected drift of an instrument, which decays from the start of a run."""
+    def free_run_starts(
+        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
+    ) -> FreeRunStarts:
+        """Return where free runs begin and end, and the smoothed states that they begin with.
+
+        Args:
+            values: Parameter values of the vessel model for this recording.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and of the latent (unmodelled) force.
+            horizon: Length of each free run [s].
+        """
         nq = self.program.module.NQ
+        starts, ends = free_run_segments(self.times, horizon)
+        if not starts:
+            none = np.zeros(0, dtype=np.int64)
+            return FreeRunStarts(none, none, np.zeros((0, 2 * nq)), ())
+        means = self.smooth(values, on, levels).means
+        oscillators = 2 if self._oscillates(values, on) else 0
         first = (3 + oscillators) * nq
-        for a, channels in runs:
-            since = self.times[a : a + len(channels)] - self.times[a]
-            channels[:, :nq] += means[a, first : first + nq] * np.exp(-since / decay_time)[:, None]
+        drifts = []
+        for effect, acts in zip(self.program.effects, on, strict=True):
+            if isinstance(effect, DriftingMeasurement) and acts:
+                drifts.append(Drift(effect.name, means[starts, first : first + nq].copy()))
+        states = np.ascontiguousarray(means[starts, : 2 * nq])
+        return FreeRunStarts(np.array(starts), np.array(ends), states, tuple(drifts))
 
     def _oscillates(self, values: Array, on: Array) -> bool:
         """Whether the filter's state contains an oscillating force."""

@@ -99,6 +99,7 @@ class Diagnosis:
     ranking: Ranking
     remarks: tuple[str, ...]  # what was read and not used
     plan: next_experiment.Plan | None = None  # what to record next
+    held_out: tuple[MappedRecording, ...] = ()
 
     def map_recording(
         self,
@@ -305,6 +306,7 @@ def _compose(
         ranking=stages.ranking,
         remarks=loaded.remarks,
         plan=stages.plan,
+        held_out=tuple(question.held_out),
     )
 
 

@@ -7,11 +7,12 @@ from pathlib import Path
 TEMPLATES = Path(__file__).parent / "templates"
 
 
-def render_template(template: Path, **values: object) -> str:
+def render_template(template: Path, further_script: str = "", **values: object) -> str:
     """Return a self-contained HTML page from a template; a browser fetches nothing to show it.
 
     Args:
         template: Jinja template, which may include any template of `TEMPLATES`.
+        further_script: A second script, which runs WebAssembly; "" for none.
         values: Values of the names that the template uses.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -27,16 +28,27 @@ def render_template(template: Path, **values: object) -> str:
     )
     environment.filters["nonbreaking"] = _nonbreaking
     page = environment.get_template(template.name)
-    return page.render(script=script, style=style, policy=_policy(script), **values)
+    policy = _policy(script, further_script)
+    return page.render(
+        script=script, style=style, policy=policy, further_script=further_script, **values
+    )
 
 
-def _policy(script: str) -> str:
-    """Return a content security policy that allows this script only and no connections."""
-    digest = b64encode(sha256(script.encode()).digest()).decode()
+def _policy(script: str, further_script: str) -> str:
+    """Return a content security policy that allows these scripts only and no connections."""
+    sources = _source(script)
+    if further_script:
+        sources = f"{sources} {_source(further_script)} 'wasm-unsafe-eval'"
     return (
-        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        f"default-src 'none'; script-src {sources}; style-src 'unsafe-inline'; "
         "base-uri 'none'; form-action 'none'"
     )
+
+
+def _source(script: str) -> str:
+    """Return the source expression of a content security policy for one script."""
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    return f"'sha256-{digest}'"
 
 
 def _nonbreaking(words: str) -> str:

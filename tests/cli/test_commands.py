@@ -392,6 +392,7 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
                 horizon=3.0,
             ),
             out,
+            False,
         ),
         (a, "trial_boat", load, 6.0, out),
         (a, "trial_boat", load, 4.0, out),

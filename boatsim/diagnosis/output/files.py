@@ -16,6 +16,7 @@ from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import page
 from boatsim.diagnosis.report.figures import BAND, group_by_recording
+from boatsim.diagnosis.report.what_if import WhatIf
 from boatsim.errors import BadPhysics
 from boatsim.files import replace_file
 from boatsim.physics.signals import COMPONENTS, Array
@@ -24,12 +25,13 @@ from boatsim.recordings.table import Recording
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
 
-def write_diagnosis(found: Diagnosis, out: Path) -> None:
+def write_diagnosis(found: Diagnosis, out: Path, what_if: WhatIf | None = None) -> None:
     """Write all output files of a diagnosis (report, diagnosis.json, patched vessel), or none.
 
     Args:
         found: The diagnosis.
         out: Folder of the files.
+        what_if: Content of the section of the report that repeats free runs; None for none.
 
     Raises:
         BadPhysics: A fitted vessel diverges, so that the answer has numbers that are not finite.
@@ -42,7 +44,7 @@ def write_diagnosis(found: Diagnosis, out: Path) -> None:
             f"{found.vessel.name}: a fitted vessel diverges; are the units of the recording right?"
         ) from None
     with atomic_folder(out) as new:
-        page.write_report(found.findings, new)
+        page.write_report(found.findings, new, what_if)
         best, laws = found.ranking.best, found.ranking.described_terms
         patched = patched_vessel.patched_vessel_text(
             found.problem, found.vessel, best, out / "patched.toml", laws

@@ -14,6 +14,15 @@ from boatsim.diagnosis.answer.verdict import (
 from boatsim.diagnosis.report.replay_section import animated_replay
 from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import held_out_improvement_sentence, mean_force_paragraph
+from boatsim.diagnosis.report.what_if import (
+    LAYOUT_BYTES,
+    MOST_BYTES,
+    SCRIPT,
+    TOO_LARGE,
+    WhatIf,
+    template_values,
+    within_size,
+)
 from boatsim.files import replace_file
 from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.html_page import render_template
@@ -35,19 +44,20 @@ CORRECT_FIRST = "Correct the log as stated below, then diagnose it again."
 LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headline
 
 
-def write_report(findings: Findings, folder: Path) -> None:
+def write_report(findings: Findings, folder: Path, what_if: WhatIf | None = None) -> None:
     """Write the report of a diagnosis as report.html (one self-contained page) and as report.md.
 
     Args:
         findings: Findings of a diagnosis.
         folder: Folder of the two files.
+        what_if: Content of the section of report.html that repeats free runs; None for none.
 
     Raises:
         OSError: The files cannot be written; existing reports remain unchanged.
     """
     sections = [s for s in report_sections(findings) if s.blocks]
     texts = {
-        "report.html": report_html(findings, sections),
+        "report.html": report_html(findings, sections, what_if),
         "report.md": report_markdown(findings, sections),
     }
     for name, text in texts.items():
@@ -55,15 +65,31 @@ def write_report(findings: Findings, folder: Path) -> None:
             temporary.write_text(text, encoding="utf-8")
 
 
-def report_html(findings: Findings, sections: Sequence[Section]) -> str:
+def report_html(
+    findings: Findings, sections: Sequence[Section], what_if: WhatIf | None = None
+) -> str:
     """Return the report of a diagnosis as an HTML page.
 
     Args:
         findings: Findings of a diagnosis.
         sections: Sections of the report that have content.
+        what_if: Content of the section that repeats free runs; None for none. As many free runs of
+            it are shown as keep the page below `what_if.MOST_BYTES`.
     """
+    script, values, note = "", None, ""
+    if what_if is not None:
+        size = len(report_html(findings, sections).encode())
+        shown = within_size(what_if, MOST_BYTES - size - LAYOUT_BYTES)
+        if shown is None:
+            note = TOO_LARGE
+        else:
+            script = SCRIPT.read_text(encoding="utf-8")
+            values = template_values(shown, sum(len(one.starts) for one in what_if.recordings))
     return render_template(
         TEMPLATE,
+        script,
+        what_if=values,
+        what_if_note=note,
         f=findings,
         verdict=_verdict(findings),
         answer=findings.answer,

@@ -1,0 +1,55 @@
+/* Functions that a page calls, and the memory of the program. */
+
+#define EXPORTED(name) __attribute__((export_name(name)))
+#define PAGE 65536 /* [bytes] unit in which the memory grows */
+#define ALIGNMENT 16
+
+/* Memory: one stack above the data of the program. The translated functions free their arrays when
+   they return, so that a freed block is above every block that is still in use. */
+extern unsigned char __heap_base;
+static uintptr_t top;
+
+EXPORTED("allocate") void *allocate(size_t bytes) {
+    if (top == 0) top = (uintptr_t)&__heap_base;
+    uintptr_t begin = (top + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT, end = begin + bytes;
+    size_t pages = __builtin_wasm_memory_size(0);
+    if (end > pages * PAGE) {
+        size_t missing = (end - pages * PAGE + PAGE - 1) / PAGE;
+        if (__builtin_wasm_memory_grow(0, missing) == (size_t)-1) __builtin_trap();
+    }
+    top = end;
+    return (void *)begin;
+}
+
+void *calloc(size_t count, size_t size) {
+    unsigned char *block = allocate(count * size);
+    for (size_t i = 0; i < count * size; i++) block[i] = 0;
+    return block;
+}
+
+void free(void *block) {
+    if (block != NULL && (uintptr_t)block < top) top = (uintptr_t)block;
+}
+
+void *memcpy(void *to, const void *from, size_t bytes) {
+    for (size_t i = 0; i < bytes; i++) ((unsigned char *)to)[i] = ((const unsigned char *)from)[i];
+    return to;
+}
+
+void *memset(void *to, int byte, size_t bytes) {
+    for (size_t i = 0; i < bytes; i++) ((unsigned char *)to)[i] = (unsigned char)byte;
+    return to;
+}
+
+/* Simulate intervals of a recording from given states; see `simulate_intervals` of the kernel. */
+EXPORTED("simulate") void simulate(
+    int rows, double *times, int changes, double *command_times, double *commands, double max_step,
+    double *values, double *switches, int runs, int64_t *starts, int64_t *ends, double *states,
+    double *out) {
+    inputs_t inputs = {{times, rows}, {command_times, changes}, {commands, changes, INPUTS}};
+    vessel_t vessel = {
+        {values + VALUES - BODY_NUMBERS, BODY_NUMBERS}, {values, VALUES}, {switches, EFFECTS}};
+    SIMULATE_INTERVALS(
+        inputs, max_step, vessel, (rows1_t){starts, runs}, (rows1_t){ends, runs},
+        (array2_t){states, runs, 2 * NQ}, (array3_t){out, runs, rows, 2 * NQ});
+}
