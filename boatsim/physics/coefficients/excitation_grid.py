@@ -6,6 +6,7 @@ part of the six components. Headings extend from 0 to pi; those on the other sid
 from its symmetry. Values in between are linear in the frequency and cubic in the heading.
 """
 
+from functools import lru_cache
 from math import atan2, pi
 from typing import Any
 
@@ -27,6 +28,7 @@ MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
 
 
+@lru_cache(maxsize=8)
 def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
     """Return the table of the excitation of a hull, as compiled laws read it.
 

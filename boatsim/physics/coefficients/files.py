@@ -53,6 +53,7 @@ MEMORY_COLUMNS = (
 DRIFT_COLUMNS = ("omega_radps", "heading_rad", "surge_Npm2", "sway_Npm2", "yaw_Npm")
 SET_NAMES = tuple("_".join(AXES[i] for i in axes) for axes in SETS)
 DIGITS = 9  # significant digits of the numbers
+MODEL_DIGITS = 13  # of the memory, whose sum of N / b is zero
 MOST_ROWS = 200_000  # of a table; a hull needs some hundred
 
 
@@ -135,7 +136,7 @@ def _excitation_rows(found: Coefficients) -> Iterable[Sequence[object]]:
 def _memory_rows(memory: MemoryModel) -> Iterable[Sequence[object]]:
     for name, sections in zip(SET_NAMES, memory.sections, strict=True):
         for one in sections:
-            yield [name, *one]
+            yield [name, *(f"{value:.{MODEL_DIGITS}g}" for value in one)]
 
 
 def _drift_rows(found: Coefficients, drift: Array) -> Iterable[Sequence[object]]:

@@ -36,7 +36,8 @@ SOFT = 1e-4  # weight of small matrices relative to the error, which keeps poles
 MOST_EVALUATIONS = 200  # of the poles of a model; it converges in some 30
 # Passivity is enforced on a grid from a fraction to a multiple of the frequencies of the data, with
 # a margin [-] of K scaled to 1 that covers what lies between its points
-BELOW, BEYOND, GRID, MARGIN = 0.05, 20.0, 400, 2e-4
+BELOW, BEYOND, GRID, MARGIN = 0.05, 300.0, 600, 2e-4
+FINER = 8  # points of the last check for each point of the grid
 PEAK = 25  # further points about the frequency of each section
 ROUNDS = 30  # of enforcement
 ASYMPTOTE_SECTIONS = 4  # of the model by which an unknown A_inf is extrapolated
@@ -271,6 +272,15 @@ def _passive_matrices(
             limits.append(weight * (margin[i] - np.sum(row * free)))
         change = _least_distance(np.array(constraints), np.array(limits))
         found = free + inverse @ change.reshape(free.shape)
+    # what is left of a violation is covered by a larger M of the section with most damping, whose
+    # real part is positive at all frequencies
+    broad = int(np.argmax(damping))
+    grid = np.geomspace(first, last, FINER * GRID)
+    real = _responses(damping, stiffness, grid).real
+    margin = 0.1 * MARGIN * (grid * middle) ** 2 / (grid * grid + middle * middle) ** 2
+    lowest = np.linalg.eigvalsh(_symmetric(real @ (found / TWICE)))[:, 0] - margin
+    found = found.copy()
+    found[broad, [0, 3, 5]] += max(0.0, float(np.max(-lowest / real[:, broad])))
     return found
 
 

@@ -1,7 +1,6 @@
 """Panel wave loads: excitation of a sea from hydrodynamic coefficients over frequency and heading."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import cos, pi, sin
 from typing import Any, ClassVar
 
@@ -99,15 +98,11 @@ class PanelWaveLoads(SeaParameters, Force):
         words="depth of the water, 0: deep water; default: that of the coefficients",
     )
 
-    @cached_property
-    def _grid(self) -> tuple[float, ...]:
+    def table(self) -> tuple[float, ...]:
+        """Return the excitation on a grid of frequency and heading."""
         if not self.coefficients:
             return EMPTY
         return excitation_grid(read_coefficients(self.coefficients), self.coefficients)
-
-    def table(self) -> tuple[float, ...]:
-        """Return the excitation on a grid of frequency and heading."""
-        return self._grid
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the depth of the coefficients.
@@ -138,7 +133,7 @@ class PanelWaveLoads(SeaParameters, Force):
                 f"{vessel.name}: {self.name}.depth = {own.depth:g} m; the coefficients hold for "
                 f"{found:g} m (0 is deep water)"
             )
-        own._grid  # noqa: B018 - a table that cannot be used is refused when the vessel is loaded
+        own.table()  # a table that cannot be used is refused when the vessel is loaded
         return own
 
     def wave_axes(self) -> tuple[str, ...]:

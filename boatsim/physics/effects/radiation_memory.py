@@ -242,9 +242,11 @@ class RadiationMemory(Inertia, MotionMemory):
                 f"{vessel.name}: {self.name} needs coefficients = the folder that boatsim "
                 "hydrodynamics writes"
             )
-        if vessel.effect("added_mass") is not None:
+        constant = vessel.effect("added_mass")
+        if isinstance(constant, Inertia) and constant.matrix().any():
             raise BadInput(
-                f"{vessel.name}: {self.name} contains the added mass; remove added_mass"
+                f"{vessel.name}: {self.name} contains the added mass; remove {constant.name} or "
+                "set all of its masses to 0"
             )
         found = read_coefficients(self.coefficients)
         if found.memory is None:

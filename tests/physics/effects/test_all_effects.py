@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, exp, hypot, pi, sin
+from pathlib import Path
 from typing import Any
 
 import boats
@@ -131,6 +132,7 @@ RESTS = {  # effects that are not always there
     "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
+COEFFICIENTS = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
 
 
 def drawn(kind: type[Effect], seed: int) -> Any:
@@ -147,6 +149,8 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         values["dead"] *= (
             values["span"] / 2.5
         )  # a drive that is dead over all of its span is refused
+    if "coefficients" in kind.paths:
+        values["coefficients"] = str(COEFFICIENTS)
     values.pop("cut", None)  # a sea without most of its energy is refused
     values.pop("spreading", None)  # random directions have no mirror image with the same seed
     return kind(**values)
