@@ -27,7 +27,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "recordings control",
     "simulate",
     "learn",
-    "metrics warp fmu sitl",
+    "metrics warp fmu sitl hydrodynamics",
     "view",
     "drive",
     "diagnosis",
@@ -46,6 +46,7 @@ ABOUT = {  # captions of the folders in the picture
     "warp": "boats on a GPU",
     "fmu": "boats elsewhere",
     "sitl": "autopilots in the loop",
+    "hydrodynamics": "coefficients in waves",
     "view": "rerun and pages",
     "drive": "hands on the sticks",
     "diagnosis": "what was left out",
@@ -183,6 +184,7 @@ COLOURS = (
     "#a3722f",
     "#5c8a4a",
     "#8a5a7a",
+    "#4a7f5f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

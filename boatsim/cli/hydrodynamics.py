@@ -96,13 +96,12 @@ def _from_output(path: Path, options: HydrodynamicsOptions) -> Coefficients:
         return read_nemoh(path, scale)
     kinds = ", ".join(computation.MESHES)
     raise BadInput(
-        f"{path}: allowed are a mesh ({kinds}), WAMIT's NAME.1 and Nemoh's {RADIATION} or its folder"
+        f"{path}: allowed are a mesh ({kinds}), WAMIT's NAME.1 and Nemoh's {RADIATION} or its "
+        "folder"
     )
 
 
-def _from_mesh(
-    path: Path, options: HydrodynamicsOptions
-) -> tuple[Coefficients, list[str]]:
+def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients, list[str]]:
     hull = computation.HullMesh(
         path,
         options.draught,
@@ -135,8 +134,8 @@ def _from_mesh(
         some = frequencies[:: max(1, (len(frequencies) - 1) // (STUDIED - 1))][:STUDIED]
         study = computation.study_mesh(hull, some, report_frequency)
     lines = [
-        f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to the "
-        "largest value of the axis,"
+        f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to "
+        "the largest value of the axis,"
     ]
     for name, (change, axis) in study.change.items():
         lines.append(f"  {name} by at most {100.0 * change:.1f} % ({axis})")

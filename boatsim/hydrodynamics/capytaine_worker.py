@@ -237,12 +237,8 @@ def main(path: str) -> None:
             if frequency == INFINITE:
                 row["added_mass"], _ = radiation(solver, body, np.inf, water)
             else:
-                row["added_mass"], row["damping"] = radiation(
-                    solver, body, frequency, water
-                )
-                row["excitation"] = excitation(
-                    solver, body, frequency, request["headings"], water
-                )
+                row["added_mass"], row["damping"] = radiation(solver, body, frequency, water)
+                row["excitation"] = excitation(solver, body, frequency, request["headings"], water)
             append_line(results, row)
         print(f"done {number} of {len(frequencies)}", flush=True)
 

@@ -18,7 +18,7 @@ COLUMNS = 5  # of NAME.1: period, row, column, added mass, damping; the last onl
 
 @dataclass(frozen=True)
 class OutputScale:
-    """What the files of WAMIT or Nemoh do not contain.
+    """Dimensions and water, which the files of WAMIT or Nemoh do not contain.
 
     Attributes:
         length: Unit of length of WAMIT, ULEN [m].
@@ -112,9 +112,7 @@ def _read_numbers(path: Path) -> list[list[float]]:
     return found
 
 
-def _read_excitation(
-    path: Path, frequency: Array, scale: OutputScale
-) -> tuple[Array, Array]:
+def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[Array, Array]:
     """Return headings and excitation from NAME.3 (diffraction) or NAME.2 (Haskind)."""
     file = path.with_suffix(".3")
     if not file.is_file():

@@ -207,7 +207,7 @@ class Stepper(ABC):
 
     @cached_property
     def _advance_memory_of_motion(self) -> Callable[[float, float], None]:
-        """`advance_memory_of_motion` in the state `_state_of_force`, a function of time and step."""
+        """`advance_memory_of_motion` in `_state_of_force`, a function of time and step."""
         rest = self._memory, self._act, self._values, self._on
         return partial_call(
             self.code, "advance_memory_of_motion", ..., self._state_of_force, ..., *rest

@@ -21,8 +21,9 @@ def print_hemisphere(folder: Path) -> None:
     for row in hemisphere.comparison(folder):
         a, b = row.added_mass, row.damping
         print(
-            f"{row.number:4.1f}  {row.axis:6}  {a[0]:9.4f}  {a[1]:.4f}  {100 * (a[0] / a[1] - 1):4.1f} %"
-            f"    {b[0]:10.4f}  {b[1]:.4f}  {100 * (b[0] - b[1]) / max(row.largest, b[1]):4.1f} %"
+            f"{row.number:4.1f}  {row.axis:6}  {a[0]:9.4f}  {a[1]:.4f}"
+            f"  {100 * (a[0] / a[1] - 1):4.1f} %    {b[0]:10.4f}  {b[1]:.4f}"
+            f"  {100 * (b[0] - b[1]) / row.largest:4.1f} %"
         )
 
 
@@ -30,8 +31,12 @@ def print_regular(folder: Path) -> None:
     """Print the errors of the simulated motion in regular waves."""
     rows = response.regular_wave_errors(folder)
     print("\nCatamaran of the Otter's particulars in regular waves, six degrees of freedom, soft")
-    print("springs in surge, sway and yaw: simulated response against the frequency domain with the")
-    print("same coefficients, difference of the complex amplitudes over the largest of the axis [%]")
+    print(
+        "springs in surge, sway and yaw: simulated response against the frequency domain with the"
+    )
+    print(
+        "same coefficients, difference of the complex amplitudes over the largest of the axis [%]"
+    )
     print("period s  heading deg  surge  sway  heave  roll  pitch  yaw")
     for period, heading, *errors in rows:
         text = "  ".join(f"{error:5.2f}" for error in errors)

@@ -10,8 +10,9 @@ from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel, load_vessel
 
-HULL = """<mujoco><worldbody><body name="hull"><geom type="box" size="1 0.5 0.1"/></body></worldbody>
-</mujoco>
+HULL = """<mujoco><worldbody><body name="hull">
+<geom type="box" size="1 0.5 0.1"/>
+</body></worldbody></mujoco>
 """
 
 

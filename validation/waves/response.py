@@ -17,7 +17,7 @@ from boatsim.simulate.stepper import State
 from validation.waves.boats import linear_response, linear_stiffness, rigid_body, write_vessel
 
 OTTER = Path(__file__).parents[2] / "models" / "otter" / "hydrodynamics"
-# Rigid body of `models/otter` but for the mass centre, which is above the centre of buoyancy here
+# Rigid body of `models/otter`, with the mass centre above the centre of buoyancy
 INERTIA = (10.26432, 13.75, 13.75)  # [kg m^2]
 DEPTH = -0.2  # [m] of the mass centre
 # Springs that hold the place and the heading, soft against the waves
@@ -34,7 +34,13 @@ freedoms = {dof}
 length = 2.0
 beam = 1.04
 draught = 0.134146341463
-body = {{ mass = {mass}, centre = [{centre}, {depth}], roll_inertia = {inertia[0]}, pitch_inertia = {inertia[1]}, yaw_inertia = {inertia[2]} }}
+
+[body]
+mass = {mass}
+centre = [{centre}, {depth}]
+roll_inertia = {inertia[0]}
+pitch_inertia = {inertia[1]}
+yaw_inertia = {inertia[2]}
 
 [[effect]]
 use = "radiation_memory"

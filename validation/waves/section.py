@@ -50,10 +50,10 @@ beam = 0.40
 draught = 0.20
 body = {{ mass = {mass}, centre = [0.0, {depth}], roll_inertia = {inertia}, yaw_inertia = 1.35 }}
 
-[measured]
-Y_N = {{}}
-Z_N = {{}}
-K_Nm = {{}}
+[channels]
+Y_N = {{ low = -1e4, high = 1e4 }}
+Z_N = {{ low = -1e4, high = 1e4 }}
+K_Nm = {{ low = -1e4, high = 1e4 }}
 
 [[effect]]
 use = "radiation_memory"
@@ -140,7 +140,9 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
             if axis in dof:
                 error = predicted[axis] - table[column]
                 motion = table[column] - table[column][~used].mean()
-                errors[axis] = float(np.sqrt(np.mean(error[used] ** 2) / np.mean(motion[used] ** 2)))
+                errors[axis] = float(
+                    np.sqrt(np.mean(error[used] ** 2) / np.mean(motion[used] ** 2))
+                )
         results.append((path.stem, period, errors))
     return results
 
@@ -178,7 +180,11 @@ def _predicted(
     w = 2.0 * np.pi * np.fft.rfftfreq(len(fine), 1.0 / RATE)
     inside = (w >= found.frequency[0]) & (w <= found.frequency[-1])
     loads = {}
-    for axis, channel, sign in (("sway", "Y_N", -1.0), ("heave", "Z_N", 1.0), ("roll", "K_Nm", -1.0)):
+    for axis, channel, sign in (
+        ("sway", "Y_N", -1.0),
+        ("heave", "Z_N", 1.0),
+        ("roll", "K_Nm", -1.0),
+    ):
         transfer = CubicSpline(found.frequency, found.excitation[:, 0, AXES.index(axis)])(
             np.clip(w, found.frequency[0], found.frequency[-1])
         )

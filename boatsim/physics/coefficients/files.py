@@ -170,9 +170,7 @@ def read_coefficients(folder: str | Path) -> Coefficients:
     """
     path = Path(folder)
     if not (path / HEADER).is_file():
-        raise BadInput(
-            f"{path}: there is no {HEADER}; boatsim hydrodynamics writes such a folder"
-        )
+        raise BadInput(f"{path}: there is no {HEADER}; boatsim hydrodynamics writes such a folder")
     times = tuple((path / name).stat().st_mtime_ns for name in FILES if (path / name).is_file())
     return _read_coefficients(path.resolve(), times)
 
@@ -217,9 +215,7 @@ def _number(header: dict[str, object], key: str, label: Path) -> float:
     return float(value)
 
 
-def _array(
-    header: dict[str, object], key: str, shape: tuple[int, ...], label: Path
-) -> Array:
+def _array(header: dict[str, object], key: str, shape: tuple[int, ...], label: Path) -> Array:
     try:
         found = np.array(header.get(key), dtype=float)
     except (TypeError, ValueError):

@@ -221,9 +221,7 @@ def _responses(damping: Array, stiffness: Array, frequency: Array) -> Array:
     return np.concatenate([s / below, level[:, :-1] - level[:, -1:]], axis=1)
 
 
-def _regressors(
-    damping: Array, stiffness: Array, frequency: Array, mass: bool = False
-) -> Array:
+def _regressors(damping: Array, stiffness: Array, frequency: Array, mass: bool = False) -> Array:
     """Return real and imaginary parts of the responses as rows (2 N, 2 count - 1).
 
     With `mass` a last column is added, of an added mass.

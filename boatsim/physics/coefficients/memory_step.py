@@ -59,9 +59,7 @@ def oscillator_factors(a: float, b: float, h: float, memory: Array, at: Any) -> 
 
 
 @njit
-def add_product(
-    act: Array, place: Any, p: Array, entry: Any, x: float, y: float, z: float
-) -> None:
+def add_product(act: Array, place: Any, p: Array, entry: Any, x: float, y: float, z: float) -> None:
     """Add the product of a symmetric matrix and a vector to three entries of an array.
 
     Args:
@@ -154,7 +152,14 @@ def advance_oscillators(memory: Array, factors: Any, states: Any, speeds: Any, n
 
 @njit
 def advance_sections(
-    speeds: Any, act: Array, held: Any, own: Any, memory: Array, at: Any, dt: float, p: Array,
+    speeds: Any,
+    act: Array,
+    held: Any,
+    own: Any,
+    memory: Array,
+    at: Any,
+    dt: float,
+    p: Array,
     first: Any,
 ) -> None:
     """Advance all oscillators to the begin of a step, and store the forces of the step.

@@ -1,4 +1,4 @@
-"""Panel wave loads: excitation of a sea from hydrodynamic coefficients over frequency and heading."""
+"""Panel wave loads: excitation of a sea from coefficients over frequency and heading."""
 
 from dataclasses import dataclass, field
 from math import cos, pi, sin
@@ -15,7 +15,9 @@ from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.sea_parameters import SeaParameters
 from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
 
-DEPTHS = 0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
+DEPTHS = (
+    0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
+)
 # The grid without coefficients: no force
 EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 48)
 

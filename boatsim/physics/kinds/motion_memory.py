@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.channel import WHOLE
+from boatsim.physics.kinds.effect import InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.signals import Motion, Wrench
 

@@ -43,9 +43,7 @@ def test_model_of_two_sections_is_found_again() -> None:
 def test_model_of_the_catamaran_agrees_with_its_coefficients() -> None:
     own = read_coefficients(OTTER)
     assert own.memory is not None
-    exact = memory_response(
-        own.frequency, own.added_mass, own.damping, own.infinite_added_mass
-    )
+    exact = memory_response(own.frequency, own.added_mass, own.damping, own.infinite_added_mass)
     model = own.memory.response(own.frequency)
     for i in range(6):
         largest = np.abs(exact[:, i, i]).max()
@@ -71,9 +69,7 @@ def test_model_is_passive_although_the_data_are_not() -> None:
     own = read_coefficients(OTTER)
     damping = own.damping.copy()
     damping[:, 2, 2] -= 0.05 * damping[:, 2, 2].max()
-    response = memory_response(
-        own.frequency, own.added_mass, damping, own.infinite_added_mass
-    )
+    response = memory_response(own.frequency, own.added_mass, damping, own.infinite_added_mass)
     found = fit_memory(own.frequency, response)
     assert lowest_damping(found, WIDE) > -1e-7
     assert found.error[0] < 0.15

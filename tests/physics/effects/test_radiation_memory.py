@@ -141,7 +141,9 @@ def test_free_decay_agrees_with_a_convolution_integral(tmp_path: Path) -> None:
         x[n + 1] = x[n] + h * v[n] + 0.5 * h * h * a
         v[n + 1] = v[n] + h * a
         for _ in range(3):
-            past = np.einsum("kij,kj->i", k[n + 1 :: -1][: n + 2], v[: n + 2] * weights[: n + 2, None])
+            past = np.einsum(
+                "kij,kj->i", k[n + 1 :: -1][: n + 2], v[: n + 2] * weights[: n + 2, None]
+            )
             ends = 0.5 * (k[0] @ v[n + 1] + k[n + 1] @ v[0])
             force = -stiff @ x[n + 1] - h * (past - ends)
             after = np.linalg.solve(total, force)
@@ -187,7 +189,9 @@ def test_response_to_regular_waves_is_that_of_the_frequency_domain(
     for _ in range(300):
         engine.advance()
         t = engine.t
-        rows.append([np.cos(w * t), np.sin(w * t), engine.state.z, engine.state.phi, engine.state.theta])
+        rows.append(
+            [np.cos(w * t), np.sin(w * t), engine.state.z, engine.state.phi, engine.state.theta]
+        )
     table = np.array(rows)
     cosine, sine = np.linalg.lstsq(table[:, :2], table[:, 2:], rcond=None)[0]
     found = (cosine - 1j * sine) / 0.001
@@ -213,7 +217,9 @@ def test_energy_never_grows_in_still_water_over_a_day(tmp_path: Path) -> None:
     assert energy[-1] < 1e-12 * energy[0]
     # below the smallest number that rounding leaves, energies only fall
     above = [e for e in energy if e > 1e-20 * energy[0]]
-    assert all(after <= before * (1.0 + 1e-9) for before, after in zip(above, above[1:], strict=False))
+    assert all(
+        after <= before * (1.0 + 1e-9) for before, after in zip(above, above[1:], strict=False)
+    )
 
 
 def test_constant_added_mass_beside_the_memory_is_refused(tmp_path: Path) -> None:
