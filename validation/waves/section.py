@@ -35,8 +35,7 @@ FREQUENCIES = [float(w) for w in np.linspace(2.0, 11.0, 19)]  # [rad/s] waves of
 BEGIN = 20.0  # [s] the section is at rest until then
 RATE = 200.0  # [Hz] of the simulation
 LONGEST = 1.0  # [s] shorter waves are counted apart
-FREE = {"3": ("sway", "heave", "roll"), "4": ("sway", "heave"), "5": ("sway", "roll")}
-FREE["6"] = ("heave", "roll")
+HELD = {"3": "", "4": "roll", "5": "heave", "6": "sway"}  # by the rig, by the kind of the run
 LEFT_OUT = ("4061_2",)  # its camera recorded nothing
 PERIODS = (1.516, 1.269, 1.238, 1.210, 1.183, 1.158, 1.113)
 PERIODS += (1.072, 1.036, 0.897, 0.802, 0.733, 0.678, 0.634)  # [s] by the number of the run
@@ -44,7 +43,7 @@ SIGNALS = {"heave": "z_m", "roll": "phi_rad"}
 TEXT = """
 about = "ship section between walls"
 source = "section_beam_waves"
-freedoms = {dof}
+freedoms = ["sway", "heave", "roll"]
 length = 0.586
 beam = 0.40
 draught = 0.20
@@ -130,14 +129,14 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
     for path in sorted(RUNS.glob("*.csv")):
         if path.stem in LEFT_OUT:
             continue
-        dof = FREE[path.stem[0]]
+        held = HELD[path.stem[0]]
         period = PERIODS[int(path.stem[1:3]) - 1]
         table = _read_run(path)
-        predicted = _predicted(_vessel(folder, found, dof), found, table, dof)
+        predicted = _predicted(_vessel(folder, found, held), found, table)
         errors = {}
         used = table["t_s"] >= BEGIN
         for axis, column in SIGNALS.items():
-            if axis in dof:
+            if axis != held:
                 error = predicted[axis] - table[column]
                 motion = table[column] - table[column][~used].mean()
                 errors[axis] = float(
@@ -153,11 +152,10 @@ def _read_run(path: Path) -> dict[str, Array]:
     return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
 
 
-def _vessel(folder: Path, found: Coefficients, dof: tuple[str, ...]) -> Vessel:
-    """Return the section with the given degrees of freedom."""
+def _vessel(folder: Path, found: Coefficients, held: str) -> Vessel:
+    """Return the section; the rig holds the given degree of freedom, if any."""
     stiffness = linear_stiffness(found, MASS, DEPTH)
     text = TEXT.format(
-        dof=list(dof),
         mass=MASS,
         depth=DEPTH,
         inertia=INERTIA,
@@ -165,12 +163,12 @@ def _vessel(folder: Path, found: Coefficients, dof: tuple[str, ...]) -> Vessel:
         heave=stiffness[2, 2],
         roll=stiffness[3, 3],
     )
-    return write_vessel(folder / f"section_{'_'.join(dof)}", text)
+    if held:
+        text += f'\n[[effect]]\nuse = "held_freedom"\n{held} = 1.0\n'
+    return write_vessel(folder / f"section_{held or 'free'}", text)
 
 
-def _predicted(
-    vessel: Vessel, found: Coefficients, table: dict[str, Array], dof: tuple[str, ...]
-) -> dict[str, Array]:
+def _predicted(vessel: Vessel, found: Coefficients, table: dict[str, Array]) -> dict[str, Array]:
     """Return the motion of the section under the measured wave, at the rows of the table."""
     t, wave = table["t_s"], np.nan_to_num(table["wave_in_m"])
     fine = np.arange(t[0], t[-1], 1.0 / RATE)

@@ -24,6 +24,7 @@ from boatsim.physics.base import (
     Effect,
     Force,
     Inertia,
+    MassMatrix,
     Motion,
     RandomForce,
     Reaction,
@@ -151,6 +152,11 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         )  # a drive that is dead over all of its span is refused
     if "coefficients" in kind.paths:
         values["coefficients"] = str(COEFFICIENTS)
+        values.pop("modal_period", None)  # waves shorter than those of the table exert no force
+    if kind.type_name() == "radiation_memory":  # a mass matrix is positive definite
+        least = min(values[axis] for axis in AXES)
+        for name in set(MassMatrix._fields) - set(AXES):
+            values[name] *= 0.2 * least
     values.pop("cut", None)  # a sea without most of its energy is refused
     values.pop("spreading", None)  # random directions have no mirror image with the same seed
     return kind(**values)
