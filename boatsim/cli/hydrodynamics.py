@@ -68,7 +68,7 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
         BadInput: The hull cannot be read, or Capytaine is not installed.
     """
     out = options.out or hull.parent / FOLDER
-    notes = []
+    notes: list[str] = []
     if hull.suffix.lower() in computation.MESHES:
         found, notes = _from_mesh(hull, options)
     else:

@@ -22,7 +22,7 @@ UPRIGHT, SIDEWAYS = (0, 2, 4), (1, 3, 5)
 
 def to_sname(matrix: Array) -> Array:
     """Return matrices (..., 6, 6) of z-up axes in SNAME axes."""
-    return np.asarray(matrix) * SIGNS[:, None] * SIGNS
+    return np.asarray(np.asarray(matrix) * SIGNS[:, None] * SIGNS)
 
 
 def excitation_to_sname(excitation: Array, conjugate: bool) -> Array:
@@ -33,7 +33,9 @@ def excitation_to_sname(excitation: Array, conjugate: bool) -> Array:
         conjugate: Whether its time factor is exp(-i w t).
     """
     found = np.asarray(excitation) * SIGNS
-    return np.conj(found) if conjugate else found
+    if conjugate:
+        found = np.conj(found)
+    return np.asarray(found)
 
 
 def asymmetry(added_mass: Array) -> float:

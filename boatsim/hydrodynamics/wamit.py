@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.hydrodynamics.axes import SIGNS, excitation_to_sname, to_sname
+from boatsim.hydrodynamics.axes import excitation_to_sname, to_sname
 from boatsim.hydrodynamics.headings import on_starboard_side
 from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
 from boatsim.physics.coefficients.table import Coefficients
@@ -49,7 +49,8 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         BadInput: A file is missing or has another form.
     """
     rows = _read_numbers(path)
-    infinite, found = np.full((6, 6), np.nan), {}
+    infinite = np.full((6, 6), np.nan)
+    found: dict[float, Array] = {}
     for row in rows:
         period, i, j = row[0], int(row[1]) - 1, int(row[2]) - 1
         if not (0 <= i < 6 and 0 <= j < 6):
@@ -144,4 +145,4 @@ def _read_restoring(path: Path, scale: OutputScale) -> Array:
         i, j = int(row[0]) - 1, int(row[1]) - 1
         power = 2 + (i > 2) + (j > 2)
         found[i, j] = row[2] * scale.density * GRAVITY * scale.length**power
-    return found * SIGNS[:, None] * SIGNS
+    return to_sname(found)

@@ -20,7 +20,7 @@ from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
 VALUES = 12  # of each frequency and heading
-# Sizes of the grid, by which the values in between err by less than 0.5 % of the largest one for
+# Sizes of the grid, by which the values in between err by less than 1 % of the largest one for
 # hulls in waves of half their length and more (tests)
 FREQUENCIES, HEADINGS = 96, 25
 # Sign of a component in the mirror at the plane of symmetry of the hull

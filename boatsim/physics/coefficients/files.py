@@ -10,7 +10,7 @@ The units and axes are those of `table.Coefficients`.
 """
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -208,14 +208,14 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
     )
 
 
-def _number(header: dict[str, object], key: str, label: Path) -> float:
+def _number(header: Mapping[str, object], key: str, label: Path) -> float:
     value = header.get(key)
     if not isinstance(value, int | float) or isinstance(value, bool) or not np.isfinite(value):
         raise BadInput(f"{label}: {key} = {value!r}; a number is required")
     return float(value)
 
 
-def _array(header: dict[str, object], key: str, shape: tuple[int, ...], label: Path) -> Array:
+def _array(header: Mapping[str, object], key: str, shape: tuple[int, ...], label: Path) -> Array:
     try:
         found = np.array(header.get(key), dtype=float)
     except (TypeError, ValueError):
