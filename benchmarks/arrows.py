@@ -27,7 +27,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "recordings control",
     "simulate",
     "learn",
-    "metrics warp fmu sitl webassembly",
+    "metrics warp fmu sitl webassembly hydrodynamics",
     "view",
     "drive",
     "diagnosis",
@@ -47,6 +47,7 @@ ABOUT = {  # captions of the folders in the picture
     "fmu": "boats elsewhere",
     "sitl": "autopilots in the loop",
     "webassembly": "boats in a browser",
+    "hydrodynamics": "coefficients in waves",
     "view": "rerun and pages",
     "drive": "hands on the sticks",
     "diagnosis": "what was left out",
@@ -185,6 +186,7 @@ COLOURS = (
     "#5c8a4a",
     "#8a5a7a",
     "#2f6f5b",
+    "#4a7f5f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

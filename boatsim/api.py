@@ -716,8 +716,9 @@ def wave_field(scenario: Name | Scenario, seed: int | None = None) -> WaveField:
     """Return the waves of a scenario, whose elevation is known at any place and time.
 
     They are the waves that exert the forces in a run with this seed, and whose elevation at the
-    vessel is the column `wave_elevation_m` of its recording. Waves of `irregular_sea` and
-    `strip_wave_loads` have an elevation; `wave_forcing` and `filtered_sea` are forces alone.
+    vessel is the column `wave_elevation_m` of its recording. Waves of `irregular_sea`,
+    `strip_wave_loads` and `panel_wave_loads` have an elevation; `wave_forcing` and `filtered_sea`
+    are forces alone.
 
     Args:
         scenario: Name or file of a scenario, or a `Scenario`.

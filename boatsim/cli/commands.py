@@ -58,7 +58,7 @@ COMMAND_GROUPS = {
     ),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
-    "Vessels and content": ("new", "list", "show"),
+    "Vessels and content": ("new", "hydrodynamics", "list", "show"),
 }
 
 
@@ -748,6 +748,96 @@ def manoeuvre(
             if value is not None:
                 words += [option, f"{value:g}"]
         return run_manoeuvre(scenario, folder, shlex.join(words))
+
+
+@app.command()
+@exits_with_code
+def hydrodynamics(
+    hull: Annotated[
+        Path,
+        typer.Argument(
+            metavar="HULL",
+            help="Mesh (.stl, .obj, .ply; z up, x forward), NAME.1 of WAMIT, or Nemoh's folder.",
+        ),
+    ],
+    draught: Annotated[
+        float,
+        typer.Option(min=1e-3, max=100.0, metavar="M", help="Draught above the lowest point [m]."),
+    ],
+    density: Annotated[
+        float, typer.Option(min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3].")
+    ] = 1025.0,
+    depth: Annotated[
+        float, typer.Option(min=0.0, max=11000.0, metavar="M", help="Of the water; 0: deep [m].")
+    ] = 0.0,
+    origin: Annotated[
+        float,
+        typer.Option(metavar="X", help="Origin of motion of the vessel along x of the mesh [m]."),
+    ] = 0.0,
+    scale: Annotated[
+        float,
+        typer.Option(min=1e-6, max=1e6, metavar="M", help="Unit of the mesh, or WAMIT's ULEN [m]."),
+    ] = 1.0,
+    panel: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=100.0,
+            metavar="M",
+            help="Longest edge of a panel [m]; 0: those of the file [default: length / 16].",
+        ),
+    ] = None,
+    frequencies: Annotated[
+        int, typer.Option(min=8, max=300, metavar="N", help="Number of frequencies.")
+    ] = 30,
+    headings: Annotated[
+        int, typer.Option(min=5, max=73, metavar="N", help="Number of headings from 0 to 180 deg.")
+    ] = 13,
+    lowest: Annotated[
+        float | None,
+        typer.Option(metavar="W", help="Frequency [rad/s] [default: waves of 20 lengths]."),
+    ] = None,
+    highest: Annotated[
+        float | None,
+        typer.Option(metavar="W", help="Frequency [rad/s] [default: waves of half the length]."),
+    ] = None,
+    compare: Annotated[
+        bool,
+        typer.Option(
+            "--compare/--no-compare", help="Compare with panels of half the size at 3 frequencies."
+        ),
+    ] = True,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Folder to write [default: hydrodynamics next to HULL].",
+        ),
+    ] = None,
+) -> int:
+    """Compute hydrodynamic coefficients of a hull by Capytaine, or convert those of WAMIT or Nemoh.
+
+    The effects radiation_memory and panel_wave_loads of a vessel read the folder. Needs
+    boatsim[bem] for a mesh.
+    """
+    from boatsim.cli.hydrodynamics import HydrodynamicsOptions, write_hydrodynamics
+
+    options = HydrodynamicsOptions(
+        draught=draught,
+        density=density,
+        depth=depth,
+        origin=origin,
+        scale=scale,
+        panel=panel,
+        frequencies=frequencies,
+        headings=headings,
+        lowest=lowest,
+        highest=highest,
+        compare=compare,
+        out=out,
+    )
+    return write_hydrodynamics(hull, options)
 
 
 @app.command("list")

@@ -9,6 +9,7 @@ from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
+from boatsim.errors import BadInput
 from boatsim.fmu.variables import Variable
 from boatsim.physics.commands import input_vector
 from boatsim.physics.kernel.records import FleetArrays
@@ -99,7 +100,13 @@ def program_source(program: Program, variables: Sequence[Variable], step: float,
 
     Raises:
         NotTranslatable: A law has no C form.
+        BadInput: An effect has a memory of the motion.
     """
+    if program.module.HAS_ADVANCE_MOTION_MEMORY:
+        raise BadInput(
+            f"{program.vessel.name}: an FMU takes no effect with a memory of the motion, such as "
+            "radiation_memory"
+        )
     parts = [
         "/* The equations of motion of a vessel, translated by boatsim; not meant to be edited. */",
         translated_functions(program),

@@ -16,6 +16,7 @@ from boatsim.physics.kinds.flow import WaterFlow
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
 from boatsim.physics.kinds.measurement import Measurement
+from boatsim.physics.kinds.motion_memory import MotionMemory
 from boatsim.physics.kinds.reaction import Reaction
 from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.kinds.release import CoefficientChange, CoefficientRelease
@@ -66,6 +67,7 @@ __all__ = [
     "MassMatrix",
     "Measurement",
     "Motion",
+    "MotionMemory",
     "Param",
     "Reaction",
     "SignalHistory",

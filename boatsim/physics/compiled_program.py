@@ -61,6 +61,7 @@ class CompiledProgram(Protocol):
     HAS_TIME_TO_DISCONTINUITY: (
         bool  # whether the signal of a channel may jump or bend while its command is held
     )
+    HAS_ADVANCE_MOTION_MEMORY: bool  # whether an effect remembers the motion of the hull
     SHORTEST: float  # [s] shortest part of a step
     ENOUGH: float  # [s] remainder of a step that is neglected
 
@@ -73,6 +74,21 @@ class CompiledProgram(Protocol):
         self, commands: Array, memory: Array, dt: float, p: Array, on: Array, act: Array
     ) -> None:
         """Advance all actuators of the vessel by one step of dt [s] under commands (inputs,)."""
+
+    def advance_memory_of_motion(
+        self,
+        t: float,
+        s: Array,
+        dt: float,
+        memory: Array,
+        act: Array,
+        p: Array,
+        on: Array,
+    ) -> None:
+        """Advance the states of effects that remember the motion to the state s (2 NQ,).
+
+        A step of dt [s] begins there.
+        """
 
     def settle_actuators(
         self, commands: Array, memory: Array, p: Array, on: Array, act: Array

@@ -23,6 +23,7 @@ from boatsim.physics.debugging import is_compiled
 from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
 from boatsim.physics.kinds.effect import Effect, EffectKind, LawCall, ProgramFunction
 from boatsim.physics.kinds.filtered import FilteredSignal
+from boatsim.physics.kinds.motion_memory import MotionMemory
 from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.vessel import Vessel
 
@@ -53,19 +54,27 @@ class Composition:
     arrays.
     """
 
-    def __init__(self, vessel: Vessel, effects: Sequence[Effect], offsets: Sequence[int]) -> None:
+    def __init__(
+        self,
+        vessel: Vessel,
+        effects: Sequence[Effect],
+        offsets: Sequence[int],
+        table_offsets: Sequence[int],
+    ) -> None:
         """Assign places to signals and states.
 
         Args:
             vessel: The vessel.
             effects: The vessel's own effects, then candidates, which act where their switch is on.
             offsets: Place of each effect's first parameter in the flat array.
+            table_offsets: Place of the first entry of each effect's table in it.
         """
         self.vessel, self.offsets = vessel, tuple(offsets)
+        self.table_offsets = tuple(table_offsets)
         self.effects = tuple(effects)
         self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
         self.signal_sums: Mapping[str, Sequence[str]] = {}
-        if any(type(e).sees_held for e in self.effects):
+        if any(type(e).sees_held and not isinstance(e, MotionMemory) for e in self.effects):
             self.signal_sums = vessel.signal_sums
         held = [*vessel.law_signals, *self.signal_sums]
         self._own: dict[int, int] = {}
@@ -76,6 +85,10 @@ class Composition:
             elif isinstance(effect, FilteredSignal):
                 self._own[i] = len(held)
                 held += [f"{value} by {effect.name}" for value in type(effect).filtered]
+            elif isinstance(effect, MotionMemory):
+                self._own[i] = len(held)
+                count = type(effect).memory_signals
+                held += [f"memory {k} of {effect.name}" for k in range(count)]
         self.law_signals: Sequence[str] = tuple(held)
 
     # Used by the kinds of effects
@@ -94,6 +107,8 @@ class Composition:
         held: tuple[str, ...] = ()
         if type(effect).sees_held:
             held = ("act", "at", f"np.int64({self.history_index(number)})")
+        if type(effect).sees_table:
+            held += ("p", f"np.int64({self.table_offsets[number]})")
         if not type(effect).per_instance_of:
             signals = (self._signals_text(number),) if type(effect).roles else ()
             return [LawCall(number, own, signals + held)]
@@ -149,6 +164,14 @@ class Composition:
             number: Index of the effect in the program.
         """
         return self._own.get(number, 0)
+
+    def table_place(self, number: int) -> int:
+        """Return the place of the first entry of an effect's table among all parameters.
+
+        Args:
+            number: Index of the effect in the program.
+        """
+        return self.table_offsets[number]
 
     def filtered_signal_index(self, number: int) -> int:
         """Return the place among the signals of the force laws of the one that an effect filters.
@@ -210,8 +233,11 @@ class Composition:
         return found
 
     def _history_size(self, i: int) -> int:
-        """Number of states that an effect stores of the past of a signal."""
-        return type(self.effects[i]).filter_states or 1
+        """Number of states that an effect stores of the past of a signal or of the motion."""
+        effect = self.effects[i]
+        if isinstance(effect, MotionMemory):
+            return effect.memory_states
+        return type(effect).filter_states or 1
 
     def _parameters_text(self, i: int) -> str:
         """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""

@@ -46,12 +46,14 @@ class Program:
         candidates: Further effects. They are compiled too, and act where `on` is 1.
         effects: All effects that have a law: the vessel's own, then the candidates.
         offsets: Place of each effect's first parameter in the flat array.
+        table_offsets: Place of the first entry of each effect's table, after all parameters.
     """
 
     vessel: Vessel
     candidates: tuple[Effect, ...] = ()
     effects: tuple[Effect, ...] = field(init=False)
     offsets: tuple[int, ...] = field(init=False)
+    table_offsets: tuple[int, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         # A release changes a coefficient of the vessel and has no law.
@@ -59,6 +61,9 @@ class Program:
         object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
+        tables = [len(e.table()) for e in self.effects]
+        begins = np.cumsum([sum(sizes), *tables])[:-1]
+        object.__setattr__(self, "table_offsets", tuple(int(n) for n in begins))
 
     @property
     def candidate_names(self) -> tuple[str, ...]:
@@ -66,8 +71,10 @@ class Program:
         return tuple(e.name for e in self.candidates if not type(e).described)
 
     def values(self) -> Array:
-        """Parameters (P,) of all effects of the program in one array, in SI units."""
-        return np.array([v for e in self.effects for v in e.values()], dtype=float)
+        """Parameters and then tables (P,) of all effects of the program, in SI units."""
+        parameters = [v for e in self.effects for v in e.values()]
+        tables = [e.table() for e in self.effects]
+        return np.concatenate([parameters, *tables]).astype(float)
 
     def effect_switches(self, active: Sequence[str] = ()) -> Array:
         """Return an array (E,) that says which effects act: 1 for active effects, else 0.
@@ -138,7 +145,7 @@ class Program:
     @cached_property
     def composition(self) -> Composition:
         """Layout of the program: indices of each effect's parameters, signals and states."""
-        return Composition(self.vessel, self.effects, self.offsets)
+        return Composition(self.vessel, self.effects, self.offsets, self.table_offsets)
 
     @property
     def memory_size(self) -> int:

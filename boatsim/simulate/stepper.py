@@ -205,6 +205,14 @@ class Stepper(ABC):
             self.code, "advance_actuators", *arrays, ..., self._values, self._on, self._act
         )
 
+    @cached_property
+    def _advance_memory_of_motion(self) -> Callable[[float, float], None]:
+        """`advance_memory_of_motion` in `_state_of_force`, a function of time and step."""
+        rest = self._memory, self._act, self._values, self._on
+        return partial_call(
+            self.code, "advance_memory_of_motion", ..., self._state_of_force, ..., *rest
+        )
+
     def _advance(self, left: float) -> None:
         """One step of `left` s, cut where the signal of an actuator has a jump or a kink."""
         least, before, whole = self.code.SHORTEST, 0.0, left
@@ -215,6 +223,9 @@ class Stepper(ABC):
                 dt = self._substep_length(left, least)
                 least, before = self._minimum_substep(dt, before, least), dt
             self._advance_actuators(dt)
+            if self.code.HAS_ADVANCE_MOTION_MEMORY:
+                self._state_of_force[:] = self._joint_state()
+                self._advance_memory_of_motion(self.t, dt)
             self._step(dt)
             self._mean += self._mean_actuators() * (dt / whole)
             left -= dt

@@ -20,6 +20,7 @@ ENVIRONMENT = {  # heading -> effects of the library that belong to it
     "Waves": (
         "irregular_sea",
         "strip_wave_loads",
+        "panel_wave_loads",
         "filtered_sea",
         "wave_forcing",
         "yaw_rate_waves",

@@ -31,6 +31,11 @@ def translated_source(program: Program, real: str) -> str:
         BadInput: The law of an effect cannot be translated.
     """
     code, translation = program.module, Translation()
+    if code.HAS_ADVANCE_MOTION_MEMORY:
+        raise BadInput(
+            f"{program.vessel.name}: a batch on Warp takes no effect with a memory of the motion, "
+            "such as radiation_memory"
+        )
     try:
         for name, kinds in ENTRIES.items():
             translation.translate_function(getattr(code, name), kinds)

@@ -205,6 +205,8 @@ def _evaluate(
         arguments.append(carrier.values())
     if kind.sees_held:
         arguments += [np.zeros(100), 0, 0]
+    if kind.sees_table:
+        arguments += [np.array([*effect.table(), 0.0]), 0]
     return tuple(python_function(kind.law)(*arguments))
 
 

@@ -13,8 +13,8 @@ from boatsim.physics.kernel.records import FleetArrays
 from boatsim.physics.signals import Array
 
 from .inertia import compute_mass_constants
-from .laws import HELD
-from .motion import NQ, instrument_readings, step_in_place
+from .laws import HAS_ADVANCE_MOTION_MEMORY, HELD
+from .motion import NQ, advance_memory_of_motion, instrument_readings, step_in_place
 from .run import (
     ENOUGH,
     SHORTEST,
@@ -30,6 +30,7 @@ substep_length_inlined, advance_actuators_inlined = (
     compile_shared_law(advance_actuators),
 )
 step_inlined = compile_shared_law(step_in_place)
+advance_memory_inlined = compile_shared_law(advance_memory_of_motion)
 
 
 @unlocked
@@ -63,6 +64,8 @@ def advance_boats(boats: Any, fleet: FleetArrays, dt: float, steps: int) -> None
                 part = substep_length_inlined(commands[b], memory[b], left, least, p[b], on)
                 least, before = minimum_substep(part, before, least), part
                 advance_actuators_inlined(commands[b], memory[b], part, p[b], on, act[b])
+                if HAS_ADVANCE_MOTION_MEMORY:
+                    advance_memory_inlined(now, y[b], part, memory[b], act[b], p[b], on)
                 step_inlined(now, y[b], part, act[b], p[b], on, k[b], force)
                 now, left = now + part, left - part
         t[b] = begin + steps * dt

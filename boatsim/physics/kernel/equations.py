@@ -413,6 +413,20 @@ class EquationWriter:
         )
         return lines.text
 
+    def advance_memory_of_motion_code(self) -> list[str]:
+        """Return the source lines of the generated function `advance_memory_of_motion`.
+
+        It advances the states of effects that remember the motion of the hull.
+        """
+        lines = CodeLines()
+        self.generate_state_unpacking(lines)
+        frame = self.generate_kinematics(lines)
+        motion = self.motion_constructor_text(frame)
+        lines.append_line(
+            f"advance_motion_memory({motion}, memory, dt, p, on, act, np.int64(HELD))"
+        )
+        return lines.text
+
     def pose_and_velocities_code(self) -> list[str]:
         """Return the source lines of the generated function `pose_and_velocities`.
 

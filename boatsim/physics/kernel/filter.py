@@ -43,6 +43,7 @@ from boatsim.physics.signals import Array, InstrumentDrift, OscillatingForce
 
 from .inertia import compute_mass_constants
 from .laws import (
+    HAS_ADVANCE_MOTION_MEMORY,
     HAS_INSTRUMENT_DRIFT,
     HAS_OSCILLATING_FORCE,
     HELD,
@@ -62,6 +63,7 @@ from .motion import (
     K,
     acceleration_jacobian,
     acceleration_per_force,
+    advance_memory_of_motion,
     expected_measurement_of_level_hull,
     pose_and_velocities,
     step_in_place,
@@ -119,6 +121,8 @@ def predict_motion(
         if row + 1 < len(given):
             dt = min(dt, given[row + 1] - begin - done)
         advance_actuators(commands[row], memory, dt, p, on, act)
+        if HAS_ADVANCE_MOTION_MEMORY:
+            advance_memory_of_motion(begin + done, y, dt, memory, act, p, on)
         step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row

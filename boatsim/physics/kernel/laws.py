@@ -22,6 +22,7 @@ CANDIDATES = 0  # number of effects that a switch turns on
 HAS_TIME_TO_DISCONTINUITY = (
     False  # whether the signal of any channel may jump or bend while its command is held
 )
+HAS_ADVANCE_MOTION_MEMORY = False  # whether any effect remembers the motion of the hull
 HAS_OSCILLATING_FORCE = False  # whether any effect is a random oscillating force
 HAS_INSTRUMENT_DRIFT = False  # whether any instrument has a slowly varying error
 
@@ -48,6 +49,17 @@ def advance_channels(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
 ) -> None:
     """Advance the actuators of a vessel by one step of dt [s]; fill act (3 held,)."""
+    raise NotImplementedError
+
+
+def advance_motion_memory(
+    m: Motion, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
+) -> None:
+    """Advance the states of effects that remember the motion of the hull; fill act (3 held,).
+
+    m is the motion at the begin of a step of dt [s]. The states are those at the begin of the step
+    before, which this function stored with its motion.
+    """
     raise NotImplementedError
 
 

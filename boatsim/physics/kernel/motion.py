@@ -31,6 +31,12 @@ def step_in_place(
     """
 
 
+def advance_memory_of_motion(
+    t: float, s: Array, dt: float, memory: Array, act: Array, p: Array, on: Any
+) -> None:
+    """Advance the states of effects that remember the motion to s, where a step dt begins."""
+
+
 def total_body_force(
     t: float, s: Array, act: Array, at: Any, p: Array, on: Any
 ) -> tuple[float, ...]:

@@ -9,8 +9,14 @@ from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.signals import Array
 
 from .inertia import compute_mass_constants
-from .laws import HAS_TIME_TO_DISCONTINUITY, HELD, advance_channels, time_to_discontinuity
-from .motion import NQ, K, step_in_place
+from .laws import (
+    HAS_ADVANCE_MOTION_MEMORY,
+    HAS_TIME_TO_DISCONTINUITY,
+    HELD,
+    advance_channels,
+    time_to_discontinuity,
+)
+from .motion import NQ, K, advance_memory_of_motion, step_in_place
 
 # [s] Shortest part of a step; within one, a signal that jumps is replaced by its mean.
 SHORTEST = 1e-6
@@ -97,6 +103,8 @@ def rollout(
                 part = substep_length(commands[i], memory, left, least, p, on)
                 least, before = minimum_substep(part, before, least), part
                 advance_actuators(commands[i], memory, part, p, on, act)
+                if HAS_ADVANCE_MOTION_MEMORY:
+                    advance_memory_of_motion(t, y, part, memory, act, p, on)
                 step_in_place(t, y, part, act, p, on, k, force)
                 t, left = t + part, left - part
         out[i + 1] = y[: 2 * NQ]

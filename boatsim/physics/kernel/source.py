@@ -10,7 +10,7 @@ import numpy as np
 from boatsim.physics.kernel.compiling import inlined, lean
 from boatsim.physics.signals import MeasuredMotion, Motion
 
-from .laws import HELD, water_velocity, wrench
+from .laws import HELD, advance_motion_memory, water_velocity, wrench
 """
 
 
@@ -154,6 +154,12 @@ def dynamics_functions(w: EquationWriter) -> list[str]:
             "total_body_force(t, s, act, at, p, on)",
             "Body force (NQ,) of all laws with the actuators act[at:].",
             w.total_body_force_code(),
+            "lean",
+        ),
+        function_text(
+            "advance_memory_of_motion(t, s, dt, memory, act, p, on)",
+            "Advance the states of effects that remember the motion to s, where a step dt begins.",
+            w.advance_memory_of_motion_code(),
             "lean",
         ),
         function_text(

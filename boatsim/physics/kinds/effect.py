@@ -107,8 +107,13 @@ class Effect(CheckedParameters):
     turns_over: ClassVar[bool] = False
     # its law also takes all actuators: `act`, `at` and the index of the recalled value
     sees_held: ClassVar[bool] = False
+    # its law also takes all parameters `p` and the index of the first entry of its table in them
+    sees_table: ClassVar[bool] = False
     # effect on each of whose instances it acts: its law takes their signals and parameters
     per_instance_of: ClassVar[str] = ""
+
+    # settings that are paths; relative ones start at the folder of the file that contains them
+    paths: ClassVar[tuple[str, ...]] = ()
 
     filled: frozenset[str] = field(  # parameters set by `with_all_parameters` instead of by a file
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
@@ -279,6 +284,14 @@ class Effect(CheckedParameters):
             Name of the parameter -> value.
         """
         return {}
+
+    def table(self) -> tuple[float, ...]:
+        """Return the table of numbers that the compiled law reads after all parameters.
+
+        It holds what no parameter can, such as coefficients over frequency. Empty unless a subclass
+        has one; its law takes it with `sees_table`.
+        """
+        return ()
 
     def wave_axes(self) -> tuple[str, ...]:
         """Return the degrees of freedom in which the waves of the effect can exert a force.
@@ -485,6 +498,9 @@ class ProgramLayout(Protocol):
 
         It is 0 for an effect that uses none. An effect with several values has consecutive ones.
         """
+
+    def table_place(self, number: int) -> int:
+        """Return the place of the first entry of an effect's table among all parameters."""
 
     def filtered_signal_index(self, number: int) -> int:
         """Return the index in `law_signals` of the signal that an effect passes through a filter.

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.signals import Motion, Wrench
@@ -64,5 +66,9 @@ class Force(EffectKind):
             given: Signals and parameters of the instance on which the effect acts, if any.
             signals: Signals of the roles.
         """
-        own = (type(self).signals(**signals),) if type(self).roles and not given else ()
+        own: tuple[Any, ...] = ()
+        if type(self).roles and not given:
+            own = (type(self).signals(**signals),)
+        if type(self).sees_table:
+            own += (np.array([*self.table(), 0.0]), np.int64(0))  # no array is empty
         return Wrench(*type(self).law(m, self.values(), *given, *own))

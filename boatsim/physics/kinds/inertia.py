@@ -40,8 +40,11 @@ class Inertia(EffectKind):
             program: Layout of the program that is generated for the vessel.
         """
         if part is INERTIAS:
-            into = getattr(type(program.effects[number]), "moves_with", "water")
+            kind = type(program.effects[number])
+            into = getattr(kind, "moves_with", "water")
             for site in program.law_calls(number):
+                if kind.sees_held:  # a mass depends on no signal
+                    site = site._replace(signals=())
                 yield f"g = {site.text('inertia')}"
                 yield f"for j in range({len(MASS_ENTRIES)}): {into}[j] += g[j]"
 

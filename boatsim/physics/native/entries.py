@@ -40,6 +40,7 @@ RECORDS: Mapping[Any, Sequence[Kind]] = {
 COMMON: Mapping[str, Entry] = {
     "compute_mass_constants": Entry((VECTOR, VECTOR, VECTOR, VECTOR)),
     "advance_actuators": Entry((VECTOR, VECTOR, REAL, VECTOR, VECTOR, VECTOR)),
+    "advance_memory_of_motion": Entry((REAL, VECTOR, REAL, VECTOR, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "water_velocity": Entry((VECTOR, VECTOR), tuple_of_numbers),

@@ -27,6 +27,10 @@ def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> 
     del settings["use"]
     try:
         kind: type[Effect] = load_class("effect", use, folder)
+        for name in kind.paths:
+            value = settings.get(name)
+            if isinstance(value, str) and value:
+                settings[name] = str((folder / value).resolve())
         return kind.from_settings(settings)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None

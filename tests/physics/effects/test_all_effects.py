@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, exp, hypot, pi, sin
+from pathlib import Path
 from typing import Any
 
 import boats
@@ -23,6 +24,7 @@ from boatsim.physics.base import (
     Effect,
     Force,
     Inertia,
+    MassMatrix,
     Motion,
     RandomForce,
     Reaction,
@@ -131,6 +133,7 @@ RESTS = {  # effects that are not always there
     "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
+COEFFICIENTS = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
 
 
 def drawn(kind: type[Effect], seed: int) -> Any:
@@ -147,6 +150,13 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         values["dead"] *= (
             values["span"] / 2.5
         )  # a drive that is dead over all of its span is refused
+    if "coefficients" in kind.paths:
+        values["coefficients"] = str(COEFFICIENTS)
+        values.pop("modal_period", None)  # waves shorter than those of the table exert no force
+    if kind.type_name() == "radiation_memory":  # a mass matrix is positive definite
+        least = min(values[axis] for axis in AXES)
+        for name in set(MassMatrix._fields) - set(AXES):
+            values[name] *= 0.2 * least
     values.pop("cut", None)  # a sea without most of its energy is refused
     values.pop("spreading", None)  # random directions have no mirror image with the same seed
     return kind(**values)

@@ -1,0 +1,171 @@
+"""Implementation of `boatsim hydrodynamics`: coefficients of a hull over frequency and heading."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.cli.exits import print_lines, print_notes
+from boatsim.cli.progress import report_stages
+from boatsim.errors import BadInput, escape_for_terminal
+from boatsim.hydrodynamics import computation
+from boatsim.hydrodynamics.axes import ASYMMETRY, asymmetry, with_memory
+from boatsim.hydrodynamics.nemoh import RADIATION, read_nemoh
+from boatsim.hydrodynamics.wamit import OutputScale, read_wamit
+from boatsim.physics.coefficients.files import write_coefficients
+from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.signals import AXES
+
+FOLDER = "hydrodynamics"  # default name of the folder of coefficients
+STUDIED = 3  # frequencies of the comparison of meshes
+FINEST = 1600  # panels up to which a mesh is compared with one of four times as many
+
+
+@dataclass(frozen=True)
+class HydrodynamicsOptions:
+    """Options of the command.
+
+    Attributes:
+        draught: Draught [m].
+        density: Density of the water [kg/m^3].
+        depth: Depth of the water [m]; 0 for deep water.
+        origin: Place of the origin of motion in the mesh, along x [m].
+        scale: Length of a unit of the mesh, or of WAMIT's output [m].
+        panel: Longest edge of a panel [m]; None for a sixteenth of the length.
+        frequencies: Number of frequencies.
+        headings: Number of headings from 0 to pi.
+        lowest: Lowest frequency [rad/s]; None for waves of 20 lengths.
+        highest: Highest frequency [rad/s]; None for waves of half the length.
+        compare: Whether the mesh is compared with one of half the panel size.
+        out: Folder to write; None for `hydrodynamics` next to the hull.
+    """
+
+    draught: float
+    density: float
+    depth: float
+    origin: float
+    scale: float
+    panel: float | None
+    frequencies: int
+    headings: int
+    lowest: float | None
+    highest: float | None
+    compare: bool
+    out: Path | None
+
+
+def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
+    """Compute or convert the coefficients of a hull, write them to a folder and print a summary.
+
+    Args:
+        hull: A mesh, WAMIT's NAME.1, or Nemoh's folder or RadiationCoefficients.tec.
+        options: Options of the command.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        BadInput: The hull cannot be read, or Capytaine is not installed.
+    """
+    out = options.out or hull.parent / FOLDER
+    notes: list[str] = []
+    if hull.suffix.lower() in computation.MESHES:
+        found, notes = _from_mesh(hull, options)
+    else:
+        found = with_memory(_from_output(hull, options))
+    write_coefficients(out, found)
+    print_lines(_summary(found))
+    print_lines(notes)
+    share = asymmetry(found.added_mass)
+    if share > ASYMMETRY:
+        print_notes(
+            [
+                f"the hull is not symmetric to port and starboard (coupling {share:.2f}); the "
+                "effects use a symmetric one"
+            ]
+        )
+    print_lines([escape_for_terminal(f"written to {out}")])
+    return 0
+
+
+def _from_output(path: Path, options: HydrodynamicsOptions) -> Coefficients:
+    scale = OutputScale(options.scale, options.density, options.depth, options.draught)
+    if path.suffix == ".1":
+        return read_wamit(path, scale)
+    if path.is_dir() or path.name == RADIATION:
+        return read_nemoh(path, scale)
+    kinds = ", ".join(computation.MESHES)
+    raise BadInput(
+        f"{path}: allowed are a mesh ({kinds}), WAMIT's NAME.1 and Nemoh's {RADIATION} or its "
+        "folder"
+    )
+
+
+def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients, list[str]]:
+    hull = computation.HullMesh(
+        path,
+        options.draught,
+        options.origin,
+        options.scale,
+        options.density,
+        options.depth,
+    )
+    length = computation.mesh_length(hull)
+    panel = options.panel
+    if panel is None:
+        panel = computation.default_panel(length)
+    hull = computation.HullMesh(**{**vars(hull), "panel": panel})
+    low, high = computation.default_frequencies(length, options.depth, 2)
+    low = options.lowest or low
+    high = options.highest or high
+    if not 0.0 < low < high:
+        raise BadInput(f"--lowest = {low:g} rad/s; allowed is below --highest = {high:g} rad/s")
+    frequencies = [float(w) for w in np.linspace(low, high, options.frequencies)]
+    headings = [float(angle) for angle in np.linspace(0.0, np.pi, options.headings)]
+    with report_stages() as report:
+
+        def report_frequency(stage: str, share: float) -> None:
+            report("Capytaine", share, stage)
+
+        found = computation.compute_coefficients(hull, frequencies, headings, report_frequency)
+        panels = int(found.source.split(" panels")[0].split()[-1])
+        if not options.compare or panels > FINEST:
+            return found, []
+        some = frequencies[:: max(1, (len(frequencies) - 1) // (STUDIED - 1))][:STUDIED]
+        study = computation.study_mesh(hull, some, report_frequency)
+    lines = [
+        f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to "
+        "the largest value of the axis,"
+    ]
+    for name, (change, axis) in study.change.items():
+        lines.append(f"  {name} by at most {100.0 * change:.1f} % ({axis})")
+    return found, lines
+
+
+def _summary(found: Coefficients) -> list[str]:
+    """Lines on the coefficients: size, frequencies, and the fit of the memory."""
+    lines = [
+        escape_for_terminal(found.source),
+        f"{len(found.frequency)} frequencies from {found.frequency[0]:.3g} to "
+        f"{found.frequency[-1]:.3g} rad/s, {len(found.heading)} headings",
+    ]
+    if found.volume > 0.0:
+        lines.append(
+            f"displaces {found.volume:.6g} m^3, {found.volume * found.density:.6g} kg; centre of "
+            f"buoyancy {found.buoyancy[0]:.4g} m ahead and {found.buoyancy[2]:.4g} m below"
+        )
+    diagonal = np.diag(found.infinite_added_mass)
+    values = [f"{axis} {value:.4g}" for axis, value in zip(AXES, diagonal, strict=True)]
+    lines.append(f"added mass at infinite frequency [kg, kg m^2]: {', '.join(values)}")
+    if found.memory is not None:
+        for axes, sections, error in zip(
+            ("surge, heave, pitch", "sway, roll, yaw"),
+            found.memory.sections,
+            found.memory.error,
+            strict=True,
+        ):
+            lines.append(
+                f"memory in {axes}: order {2 * len(sections)} for each axis, error "
+                f"{100.0 * error:.2g} % rms"
+            )
+    return lines

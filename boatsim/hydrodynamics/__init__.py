@@ -1,0 +1,1 @@
+"""Hydrodynamic coefficients of a hull from Capytaine, WAMIT or Nemoh."""

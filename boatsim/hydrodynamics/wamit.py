@@ -1,0 +1,148 @@
+"""Coefficients from the output files of WAMIT: NAME.1, NAME.3 or NAME.2, and NAME.hst."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.errors import BadInput
+from boatsim.hydrodynamics.axes import excitation_to_sname, to_sname
+from boatsim.hydrodynamics.headings import on_starboard_side
+from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
+from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.particulars import GRAVITY
+from boatsim.physics.signals import Array
+
+COLUMNS = 5  # of NAME.1: period, row, column, added mass, damping; the last only of finite periods
+
+
+@dataclass(frozen=True)
+class OutputScale:
+    """Dimensions and water, which the files of WAMIT or Nemoh do not contain.
+
+    Attributes:
+        length: Unit of length of WAMIT, ULEN [m].
+        density: Density of the water [kg/m^3].
+        depth: Depth of the water [m]; 0 for deep water.
+        draught: Draught of the hull [m].
+        volume: Displaced volume [m^3]; 0 if it is not known.
+    """
+
+    length: float
+    density: float
+    depth: float
+    draught: float
+    volume: float = 0.0
+
+
+def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
+    """Read coefficients from WAMIT's output next to NAME.1.
+
+    A period of zero stands for infinite frequency, a negative one for frequency zero. Without
+    infinite frequency the added mass there is estimated.
+
+    Args:
+        path: NAME.1.
+        scale: Dimensions that the files do not contain.
+
+    Raises:
+        BadInput: A file is missing or has another form.
+    """
+    rows = _read_numbers(path)
+    infinite = np.full((6, 6), np.nan)
+    found: dict[float, Array] = {}
+    for row in rows:
+        period, i, j = row[0], int(row[1]) - 1, int(row[2]) - 1
+        if not (0 <= i < 6 and 0 <= j < 6):
+            raise BadInput(f"{path}: motion {max(i, j) + 1}; only one body of six is read")
+        size = scale.density * scale.length ** _power(i, j)
+        if period == 0.0:
+            infinite[i, j] = row[3] * size
+        elif period > 0.0:
+            if len(row) < COLUMNS:
+                raise BadInput(f"{path}: a period of {period:g} s has no damping")
+            w = 2.0 * np.pi / period
+            matrices = found.setdefault(w, np.zeros((2, 6, 6)))
+            matrices[:, i, j] = row[3] * size, row[4] * size * w
+    if len(found) < 3:
+        raise BadInput(f"{path}: at least three periods are required")
+    frequency = np.array(sorted(found))
+    added_mass = to_sname(np.array([found[w][0] for w in frequency]))
+    damping = to_sname(np.array([found[w][1] for w in frequency]))
+    if np.isnan(infinite).all():
+        infinite = estimated_infinite_added_mass(frequency, added_mass, damping)
+    else:
+        infinite = to_sname(np.nan_to_num(infinite))
+    heading, excitation = _read_excitation(path, frequency, scale)
+    return Coefficients(
+        source=f"WAMIT, {path.name}",
+        density=scale.density,
+        depth=scale.depth,
+        draught=scale.draught,
+        volume=scale.volume,
+        buoyancy=np.zeros(3),
+        restoring=_read_restoring(path.with_suffix(".hst"), scale),
+        frequency=frequency,
+        added_mass=added_mass,
+        damping=damping,
+        infinite_added_mass=infinite,
+        heading=heading,
+        excitation=excitation,
+    )
+
+
+def _power(i: int, j: int) -> int:
+    """Power of the length in the unit of an entry of the added mass."""
+    return 3 + (i > 2) + (j > 2)
+
+
+def _read_numbers(path: Path) -> list[list[float]]:
+    """Return the rows of numbers of a file, without lines of text."""
+    if not path.is_file():
+        raise BadInput(f"{path}: there is no such file")
+    found = []
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        try:
+            row = [float(word.replace("D", "E")) for word in line.split()]
+        except ValueError:
+            continue  # a header
+        if row:
+            found.append(row)
+    if not found:
+        raise BadInput(f"{path}: the file has no numbers")
+    return found
+
+
+def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[Array, Array]:
+    """Return headings and excitation from NAME.3 (diffraction) or NAME.2 (Haskind)."""
+    file = path.with_suffix(".3")
+    if not file.is_file():
+        file = path.with_suffix(".2")
+    if not file.is_file():
+        raise BadInput(f"{path.with_suffix('.3')}: there is neither this file nor {file.name}")
+    table: dict[float, Array] = {}
+    for row in _read_numbers(file):
+        if row[0] <= 0.0:
+            continue
+        k = int(np.argmin(np.abs(frequency - 2.0 * np.pi / row[0])))
+        values = table.setdefault(row[1], np.zeros((len(frequency), 6), dtype=complex))
+        i = int(row[2]) - 1
+        size = scale.density * GRAVITY * scale.length ** (2 + (i > 2))
+        values[k, i] = (row[5] + 1j * row[6]) * size
+    heading = np.array(sorted(table))
+    excitation = np.stack([table[angle] for angle in heading], axis=1)
+    return on_starboard_side(
+        np.radians(-heading), excitation_to_sname(excitation, conjugate=False), file
+    )
+
+
+def _read_restoring(path: Path, scale: OutputScale) -> Array:
+    """Return the hydrostatic stiffness of NAME.hst (6, 6), zero without the file."""
+    found = np.zeros((6, 6))
+    if not path.is_file():
+        return found
+    for row in _read_numbers(path):
+        i, j = int(row[0]) - 1, int(row[1]) - 1
+        power = 2 + (i > 2) + (j > 2)
+        found[i, j] = row[2] * scale.density * GRAVITY * scale.length**power
+    return to_sname(found)

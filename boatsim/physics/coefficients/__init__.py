@@ -1,0 +1,1 @@
+"""Hydrodynamic coefficients over frequency and heading: their files, memory model and grid."""

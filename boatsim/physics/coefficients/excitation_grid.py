@@ -1,0 +1,144 @@
+"""Excitation of waves on a regular grid of frequency and heading, read by compiled laws.
+
+The table of the effect has the lowest frequency [rad/s], the distance of frequencies [rad/s], the
+numbers of frequencies and of headings, then for each frequency and heading the real and imaginary
+part of the six components. Headings extend from 0 to pi; those on the other side of the hull follow
+from its symmetry. Values in between are linear in the frequency and cubic in the heading.
+"""
+
+from functools import lru_cache
+from math import atan2, pi
+from typing import Any
+
+import numpy as np
+from numba import njit
+from scipy.interpolate import CubicSpline
+
+from boatsim.errors import BadInput
+from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.signals import Array, Wrench
+
+HEAD = 4  # numbers of the table before the values
+VALUES = 12  # of each frequency and heading
+# Sizes of the grid, by which the values in between err by less than 1 % of the largest one for
+# hulls in waves of half their length and more (tests)
+FREQUENCIES, HEADINGS = 96, 25
+# Sign of a component in the mirror at the plane of symmetry of the hull
+MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
+
+
+@lru_cache(maxsize=8)
+def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
+    """Return the table of the excitation of a hull, as compiled laws read it.
+
+    Args:
+        found: Coefficients with headings from 0 to pi.
+        label: Folder of the coefficients, for messages.
+
+    Raises:
+        BadInput: There are fewer than five headings, or they do not extend from 0 to pi.
+    """
+    heading = found.heading
+    if len(heading) < 5 or abs(heading[0]) > CLOSE or abs(heading[-1] - pi) > CLOSE:
+        raise BadInput(
+            f"{label}: the headings of the excitation extend from {heading[0]:.3g} to "
+            f"{heading[-1]:.3g} rad; at least five from 0 to pi are required"
+        )
+    frequency = np.linspace(found.frequency[0], found.frequency[-1], FREQUENCIES)
+    over_frequency = CubicSpline(found.frequency, found.excitation)(frequency)
+    # around the whole hull, so that the spline is periodic
+    around = np.concatenate([heading, 2.0 * pi - heading[-2:0:-1], [2.0 * pi]])
+    other = over_frequency[:, -2:0:-1] * MIRROR
+    values = np.concatenate([over_frequency, other, over_frequency[:, :1]], axis=1)
+    around[0], around[len(heading) - 1] = 0.0, pi
+    spline = CubicSpline(around, values, axis=1, bc_type="periodic")
+    grid = spline(np.linspace(0.0, pi, HEADINGS))
+    pairs = np.stack([grid.real, grid.imag], axis=-1)
+    step = frequency[1] - frequency[0]
+    head = (float(frequency[0]), float(step), float(FREQUENCIES), float(HEADINGS))
+    return (*head, *pairs.ravel().tolist())
+
+
+@njit(inline="always")
+def cubic_weights(u: float) -> tuple[float, float, float, float]:
+    """Return the weights of four equally spaced points for a place between the middle ones.
+
+    They are those of the cubic through the middle points with the slopes of the chords (E. Catmull
+    and R. Rom, Computer Aided Geometric Design, 1974).
+
+    Args:
+        u: Place after the second point, 0 to 1 of the distance.
+    """
+    u2, u3 = u * u, u * u * u
+    return (
+        0.5 * (2.0 * u2 - u - u3),
+        0.5 * (2.0 - 5.0 * u2 + 3.0 * u3),
+        0.5 * (u + 4.0 * u2 - 3.0 * u3),
+        0.5 * (u3 - u2),
+    )
+
+
+@njit(inline="always")
+def folded(place: Any, last: Any) -> tuple[Any, float]:
+    """Return the number of a heading on the grid and its sign in the mirror: -1 beyond an end.
+
+    Args:
+        place: Number of the heading, from -1 to one more than the last.
+        last: Number of the last heading.
+    """
+    if place < 0:
+        return -place, -1.0
+    if place > last:
+        return 2 * last - place, -1.0
+    return place, 1.0
+
+
+@njit
+def excitation_force(
+    frequency: float, ahead: float, across: float, c: float, s: float, p: Array, first: Any
+) -> Wrench:
+    """Return the force of one wave of unit amplitude on the hull.
+
+    Args:
+        frequency: Frequency of the wave [rad/s]. Below the lowest one of the table the value there
+            is taken, above the highest one the force is zero.
+        ahead: Cosine of the direction to which the wave runs, relative to the hull.
+        across: Sine of it, to starboard.
+        c: Cosine of the phase of the wave at the origin of motion; a crest has phase 0.
+        s: Sine of it.
+        p: Parameters and tables.
+        first: Index of the table.
+
+    Returns:
+        Force [N/m] and moment [N].
+    """
+    count, headings = int(p[first + 2]), int(p[first + 3])
+    along = max((frequency - p[first]) / p[first + 1], 0.0)
+    if along > count - 1.0:
+        return Wrench(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    low = min(int(along), count - 2)
+    part = along - low
+    side = 1.0
+    if across < 0.0:
+        side = -1.0
+    bearing = atan2(side * across, ahead) / pi * (headings - 1.0)
+    left = min(int(bearing), headings - 2)
+    weights = cubic_weights(bearing - left)
+    X = Y = Z = K = M = N = 0.0
+    for j in range(4):
+        heading, sign = folded(left - 1 + j, headings - 1)
+        mirrored = side * sign
+        for i in range(2):
+            share = weights[j] * (1.0 - part)
+            if i == 1:
+                share = weights[j] * part
+            at = first + HEAD + ((low + i) * headings + heading) * VALUES
+            turned = share * mirrored
+            X += share * (p[at] * c - p[at + 1] * s)
+            Y += turned * (p[at + 2] * c - p[at + 3] * s)
+            Z += share * (p[at + 4] * c - p[at + 5] * s)
+            K += turned * (p[at + 6] * c - p[at + 7] * s)
+            M += share * (p[at + 8] * c - p[at + 9] * s)
+            N += turned * (p[at + 10] * c - p[at + 11] * s)
+    return Wrench(X, Y, Z, K, M, N)

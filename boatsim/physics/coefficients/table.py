@@ -1,0 +1,53 @@
+"""Hydrodynamic coefficients of a hull over frequency and heading.
+
+All numbers are in SI units, in SNAME axes (x forward, y starboard, z down) about a reference point
+on the waterline. An incident wave has the elevation a cos(w t - k (x cos beta + y sin beta)),
+positive upward, and its excitation is Re(X exp(i w t)) a.
+"""
+
+from dataclasses import dataclass
+
+from boatsim.physics.coefficients.memory_fit import MemoryModel
+from boatsim.physics.signals import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Coefficients:
+    """Hydrodynamic coefficients of a hull at rest in waves, about its reference point.
+
+    Attributes:
+        source: Program and mesh, in words.
+        density: Density of the water [kg/m^3].
+        depth: Depth of the water [m]; 0 for deep water.
+        draught: Draught of the hull [m].
+        volume: Displaced volume [m^3].
+        buoyancy: Centre of buoyancy (3,) [m].
+        restoring: Hydrostatic stiffness (6, 6) of waterplane and buoyancy, without the moment of
+            the weight [N/m, N, N m].
+        frequency: Angular frequencies (N,) [rad/s], increasing.
+        added_mass: Added mass (N, 6, 6) over `AXES` [kg, kg m, kg m^2].
+        damping: Radiation damping (N, 6, 6) [N s/m, N s, N m s].
+        infinite_added_mass: Added mass at infinite frequency (6, 6).
+        heading: Directions (H,) to which waves run [rad], from 0 to pi, clockwise from x. Waves of
+            pi come from ahead.
+        excitation: Complex excitation (N, H, 6) [N/m, N].
+        memory: State-space model of the memory of the radiation force; None without one.
+        drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
+            amplitude, of the hull that is held [N/m^2, N/m]; None if it is not known.
+    """
+
+    source: str
+    density: float
+    depth: float
+    draught: float
+    volume: float
+    buoyancy: Array
+    restoring: Array
+    frequency: Array
+    added_mass: Array
+    damping: Array
+    infinite_added_mass: Array
+    heading: Array
+    excitation: Array
+    memory: MemoryModel | None = None
+    drift: Array | None = None

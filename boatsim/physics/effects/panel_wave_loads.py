@@ -1,0 +1,145 @@
+"""Panel wave loads: excitation of a sea from coefficients over frequency and heading."""
+
+from dataclasses import dataclass, field
+from math import cos, pi, sin
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.errors import BadInput
+from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
+from boatsim.physics.coefficients.excitation_grid import excitation_force, excitation_grid
+from boatsim.physics.coefficients.files import read_coefficients
+from boatsim.physics.waves.dispersion import wave_number
+from boatsim.physics.waves.encounter import heading_of_waves
+from boatsim.physics.waves.sea_parameters import SeaParameters
+from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
+
+DEPTHS = (
+    0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
+)
+# The grid without coefficients: no force
+EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 48)
+
+
+@njit
+def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
+    """Return the first-order force of a sea on the hull, a sum over wave components.
+
+    The waves travel on the water, which moves with the current.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        p: Parameters and tables of all effects.
+        first: Index of the effect's table.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
+    X = Y = Z = K = M = N = 0.0
+    if q.significant_height == 0.0:
+        return wrench()
+    sea = sea_state(q)
+    ahead, across, run = heading_of_waves(q.toward, m)
+    for k in range(int(sea.number)):
+        w, amplitude, phase = wave_component(k, q, sea)
+        if q.spreading > 0.0:
+            ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+        # Components have a trough at phase 0
+        here = w * m.t - wave_number(w, q.depth) * run + phase + pi
+        f = excitation_force(w, ahead, across, cos(here), sin(here), p, first)
+        X += amplitude * f.X
+        Y += amplitude * f.Y
+        Z += amplitude * f.Z
+        K += amplitude * f.K
+        M += amplitude * f.M
+        N += amplitude * f.N
+    return wrench(X=X, Y=Y, Z=Z, K=K, M=M, N=N)
+
+
+@dataclass(frozen=True)
+class PanelWaveLoads(SeaParameters, Force):
+    """First-order forces of the waves of a spectrum, from a table of a boundary element method.
+
+    tau_j = Re sum_i a_i X_j(w_i, beta_i) exp(i theta_i),
+    theta_i = w_i t - k_i (x cos gamma_i + y sin gamma_i) + epsilon_i
+
+    X is the excitation of a wave of unit amplitude: pressure of the undisturbed wave and
+    diffraction, without forward speed. beta = gamma - psi is the direction of the wave relative to
+    the hull. `coefficients` is the folder that `boatsim hydrodynamics` writes, about the vessel's
+    origin of motion. The sea is that of `irregular_sea`: `spectrum`, `significant_height`,
+    `modal_period`, `toward` and the other parameters have the same meaning. Below the lowest
+    frequency of the table the excitation is that of the lowest one, above the highest it is zero.
+    """
+
+    formula: ClassVar[str] = (
+        r"\begin{aligned} \tau_j &= \operatorname{Re} \sum_i a_i X_j(\omega_i, \gamma_i - \psi) "
+        r"\, e^{\mathrm{i} \theta_i}, \quad j = 1, \dots, 6 \\ \theta_i &= \omega_i t - k_i \left("
+        r"(x - V_N t) \cos\gamma_i + (y - V_E t) \sin\gamma_i\right) + \epsilon_i, \quad "
+        r"\omega_i^2 = g k_i \tanh k_i h \end{aligned}"
+    )
+    symbols: ClassVar = {"toward": r"\gamma", "depth": "h"}
+    ruled_out_by: ClassVar = {"no_waves": (True,), "no_water": (True,)}
+    words: ClassVar[str] = "waves exert forces on the hull in all degrees of freedom"
+    shown_by: ClassVar[str] = "lying at several headings to the sea"
+    source: ClassVar[str] = (
+        "J. N. Newman, Marine Hydrodynamics, 1977, section 6.18; "
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.2"
+    )
+    sees_table: ClassVar[bool] = True
+    paths: ClassVar = ("coefficients",)
+    law: ClassVar = law
+
+    coefficients: str = field(default="")  # folder that `boatsim hydrodynamics` writes
+    depth: float = param(
+        UNSET,
+        low=0.0,
+        high=11000.0,
+        unit="m",
+        words="depth of the water, 0: deep water; default: that of the coefficients",
+    )
+
+    def table(self) -> tuple[float, ...]:
+        """Return the excitation on a grid of frequency and heading."""
+        if not self.coefficients:
+            return EMPTY
+        return excitation_grid(read_coefficients(self.coefficients), self.coefficients)
+
+    def derived_parameters(self, vessel: Boat) -> dict[str, float]:
+        """Return the depth of the coefficients.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        return {"depth": read_coefficients(self.coefficients).depth}
+
+    def with_all_parameters(self, vessel: Boat) -> "PanelWaveLoads":
+        """Return a copy of the effect in which every parameter has a value.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: No coefficients are given, or they hold for another depth of the water.
+        """
+        if not self.coefficients:
+            raise BadInput(
+                f"{vessel.name}: {self.name} needs coefficients = the folder that boatsim "
+                "hydrodynamics writes"
+            )
+        own = super().with_all_parameters(vessel)
+        found = read_coefficients(own.coefficients).depth
+        if abs(own.depth - found) > DEPTHS * found:
+            raise BadInput(
+                f"{vessel.name}: {self.name}.depth = {own.depth:g} m; the coefficients hold for "
+                f"{found:g} m (0 is deep water)"
+            )
+        own.table()  # a table that cannot be used is refused when the vessel is loaded
+        return own
+
+    def wave_axes(self) -> tuple[str, ...]:
+        """Return the degrees of freedom in which the sea exerts a force; empty if it is calm."""
+        if self.significant_height == 0.0:
+            return ()
+        return AXES

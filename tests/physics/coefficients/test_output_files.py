@@ -1,0 +1,116 @@
+"""Files of coefficients, and the output of WAMIT and Nemoh, against the coefficients they hold."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.errors import BadInput
+from boatsim.hydrodynamics.nemoh import read_nemoh
+from boatsim.hydrodynamics.wamit import OutputScale, read_wamit
+from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
+from boatsim.physics.coefficients.table import Coefficients
+
+OTTER = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
+SIGNS = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # of z-up axes
+LENGTH, DENSITY = 2.0, 1025.0
+
+
+def own() -> Coefficients:
+    return read_coefficients(OTTER)
+
+
+def write_wamit(folder: Path) -> Path:
+    """Files of WAMIT with the coefficients, written by its manual: nondimensional, exp(i w t)."""
+    found, lines, waves = own(), [], []
+    power = np.array([3, 3, 3, 4, 4, 4])
+    for i in range(6):
+        for j in range(6):
+            size = DENSITY * LENGTH ** (power[i] + power[j] - 3) * SIGNS[i] * SIGNS[j]
+            lines.append(f" 0.0 {i + 1} {j + 1} {found.infinite_added_mass[i, j] / size:.9e}")
+            for k, w in enumerate(found.frequency):
+                a, b = found.added_mass[k, i, j] / size, found.damping[k, i, j] / size / w
+                lines.append(f" {2 * np.pi / w:.9e} {i + 1} {j + 1} {a:.9e} {b:.9e}")
+    for k, w in enumerate(found.frequency):
+        for h, heading in enumerate(found.heading):
+            for i in range(6):
+                x = (
+                    found.excitation[k, h, i]
+                    * SIGNS[i]
+                    / (DENSITY * 9.81 * LENGTH ** (2 + (i > 2)))
+                )
+                polar = f"{abs(x):.9e} {np.degrees(np.angle(x)):.5f} {x.real:.9e} {x.imag:.9e}"
+                waves.append(f" {2 * np.pi / w:.9e} {-np.degrees(heading):.9f} {i + 1} {polar}")
+    (folder / "hull.1").write_text("\n".join(lines))
+    (folder / "hull.3").write_text("\n".join(waves))
+    return folder / "hull.1"
+
+
+def test_written_coefficients_are_read_again(tmp_path: Path) -> None:
+    found = own()
+    write_coefficients(tmp_path / "copy", found)
+    again = read_coefficients(tmp_path / "copy")
+    assert again.excitation == pytest.approx(found.excitation, rel=1e-8)
+    assert again.damping == pytest.approx(found.damping, rel=1e-8)
+    assert again.memory is not None and found.memory is not None
+    assert again.memory.sections[0] == pytest.approx(found.memory.sections[0], rel=1e-12)
+
+
+def test_output_of_wamit_is_converted(tmp_path: Path) -> None:
+    found, exact = (
+        read_wamit(write_wamit(tmp_path), OutputScale(LENGTH, DENSITY, 0.0, 0.134)),
+        own(),
+    )
+    assert found.frequency == pytest.approx(exact.frequency, rel=1e-7)
+    for name in ("added_mass", "damping", "infinite_added_mass"):
+        size = np.abs(getattr(exact, name)).max()
+        assert getattr(found, name) == pytest.approx(getattr(exact, name), abs=1e-7 * size)
+    assert found.heading == pytest.approx(exact.heading, abs=1e-6)
+    size = np.abs(exact.excitation).max()
+    assert np.abs(found.excitation - exact.excitation).max() < 1e-6 * size
+
+
+@pytest.mark.parametrize("degrees", [False, True])
+def test_output_of_nemoh_is_converted(tmp_path: Path, degrees: bool) -> None:
+    exact, radiation, waves = own(), [], []
+    for i in range(6):
+        radiation.append(f'Zone t="Motion of body 1 in DoF {i + 1}",I= 30,F=POINT')
+        for k, w in enumerate(exact.frequency):
+            pairs = []
+            for j in range(6):
+                sign = SIGNS[i] * SIGNS[j]
+                pairs.append(f"{sign * exact.added_mass[k, i, j]:.9e}")
+                pairs.append(f"{sign * exact.damping[k, i, j]:.9e}")
+            radiation.append(f"{w:.9e} {' '.join(pairs)}")
+    for h, heading in enumerate(exact.heading):
+        waves.append(f'Zone t="Diffraction force - beta = {-np.degrees(heading):.4f} deg",I= 30')
+        for k, w in enumerate(exact.frequency):
+            pairs = []
+            for j in range(6):
+                x = np.conj(exact.excitation[k, h, j] * SIGNS[j])  # exp(-i w t)
+                angle = np.degrees(np.angle(x)) if degrees else np.angle(x)
+                pairs.append(f"{abs(x):.9e} {angle:.9e}")
+            waves.append(f"{w:.9e} {' '.join(pairs)}")
+    (tmp_path / "RadiationCoefficients.tec").write_text("\n".join(radiation))
+    (tmp_path / "ExcitationForce.tec").write_text("\n".join(waves))
+    found = read_nemoh(tmp_path, OutputScale(1.0, DENSITY, 0.0, 0.134))
+    size = np.abs(exact.added_mass).max()
+    assert found.added_mass == pytest.approx(exact.added_mass, abs=1e-7 * size)
+    size = np.abs(exact.excitation).max()
+    assert np.abs(found.excitation - exact.excitation).max() < 1e-5 * size
+
+
+def test_missing_output_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="no such file"):
+        read_wamit(tmp_path / "hull.1", OutputScale(1.0, DENSITY, 0.0, 0.1))
+    with pytest.raises(BadInput, match="no such file"):
+        read_nemoh(tmp_path, OutputScale(1.0, DENSITY, 0.0, 0.1))
+
+
+def test_header_of_another_form_is_refused(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", replace(own(), memory=None))
+    path = tmp_path / "copy" / "coefficients.toml"
+    path.write_text(path.read_text().replace("density = 1025.0", 'density = "salt"'))
+    with pytest.raises(BadInput, match="density = 'salt'; a number is required"):
+        read_coefficients(tmp_path / "copy")

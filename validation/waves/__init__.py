@@ -1,0 +1,1 @@
+"""Vessels in waves against the frequency domain and against a recorded ship section."""

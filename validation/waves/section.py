@@ -1,0 +1,200 @@
+"""Forward prediction of a recorded ship section in beam waves from Capytaine's numbers alone.
+
+The section spans a flume between glass walls (`section_beam_waves`, NTNU). Its coefficients per
+length are differences of those of two long bodies, in which the ends cancel. The measured incident
+wave is turned into the excitation by the table, over all frequencies; the section moves by its
+memory, buoyancy, weight and mass. No number is fitted, and there is no viscous damping.
+"""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from boatsim.hydrodynamics.axes import with_memory
+from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
+from boatsim.physics.base import AXES, Array
+from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
+from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.open_water import OpenWater
+from validation.waves.boats import linear_stiffness, write_vessel
+from validation.waves.hulls import Section, write_section
+
+RUNS = Path(__file__).parents[3] / "shared" / "recordings" / "section_beam_waves" / "runs_clean"
+# Published particulars: `validation/real/section/vessel.toml`
+BEAM, DRAUGHT, BILGE, LENGTH = 0.40, 0.20, 0.0512, 0.586  # [m]
+MASS, RAILS, INERTIA = 46.8, 0.303, 0.970  # [kg], [kg] more in sway, [kg m^2]
+DEPTH = DRAUGHT - 0.106  # [m] of the mass centre below the waterline; it is 0.106 m above the keel
+DENSITY, WATER = 1000.0, 1.0  # [kg/m^3], [m] depth of the flume
+LONG, SHORT = 6.0, 4.0  # [m] lengths of the two bodies; ten beams and more
+PANEL = 0.25  # [m] along the bodies
+FREQUENCIES = [float(w) for w in np.linspace(2.0, 11.0, 19)]  # [rad/s] waves of 0.57 to 3.1 s
+BEGIN = 20.0  # [s] the section is at rest until then
+RATE = 200.0  # [Hz] of the simulation
+LONGEST = 1.0  # [s] shorter waves are counted apart
+HELD = {"3": "", "4": "roll", "5": "heave", "6": "sway"}  # by the rig, by the kind of the run
+LEFT_OUT = ("4061_2",)  # its camera recorded nothing
+PERIODS = (1.516, 1.269, 1.238, 1.210, 1.183, 1.158, 1.113)
+PERIODS += (1.072, 1.036, 0.897, 0.802, 0.733, 0.678, 0.634)  # [s] by the number of the run
+SIGNALS = {"heave": "z_m", "roll": "phi_rad"}
+TEXT = """
+about = "ship section between walls"
+source = "section_beam_waves"
+freedoms = ["sway", "heave", "roll"]
+length = 0.586
+beam = 0.40
+draught = 0.20
+body = {{ mass = {mass}, centre = [0.0, {depth}], roll_inertia = {inertia}, yaw_inertia = 1.35 }}
+
+[channels]
+Y_N = {{ low = -1e4, high = 1e4 }}
+Z_N = {{ low = -1e4, high = 1e4 }}
+K_Nm = {{ low = -1e4, high = 1e4 }}
+
+[[effect]]
+use = "radiation_memory"
+coefficients = "{folder}"
+coriolis = 0.0
+
+[[effect]]
+use = "hydrostatics"
+heave = {heave}
+roll = {roll}
+vertical = 1.0
+
+[[effect]]
+use = "applied_load"
+name = "excitation"
+on = {{ force = "Y_N", moment = "K_Nm" }}
+sway = 1.0
+roll = 1.0
+
+[[effect]]
+use = "applied_load"
+name = "vertical_excitation"
+on = {{ force = "Z_N" }}
+heave = 1.0
+"""
+
+
+def section_coefficients(folder: Path) -> Coefficients:
+    """Return the coefficients of the section, computed by Capytaine.
+
+    Args:
+        folder: Working folder.
+    """
+    bodies = []
+    for length in (SHORT, LONG):
+        path = folder / f"section_{length:g}.stl"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_section(path, Section(BEAM, DRAUGHT, BILGE), length, round(length / PANEL))
+        hull = HullMesh(path, DRAUGHT, density=DENSITY, depth=WATER)
+        heading = [0.5 * np.pi]
+        rows = run_capytaine(hull, FREQUENCIES, heading, lambda stage, share: None)
+        bodies.append(coefficients_of_rows(rows, hull, heading))
+    short, long = bodies
+    share = LENGTH / (LONG - SHORT)
+    values = {}
+    for name in (
+        "added_mass",
+        "damping",
+        "infinite_added_mass",
+        "excitation",
+        "restoring",
+        "volume",
+    ):
+        values[name] = share * (getattr(long, name) - getattr(short, name))
+    # sway, heave and roll only: moments along the body have no meaning for the section
+    for name in ("added_mass", "damping", "infinite_added_mass"):
+        values[name] = values[name].copy()
+        for axis in ("surge", "pitch", "yaw"):
+            values[name][..., AXES.index(axis), :] = 0.0
+            values[name][..., :, AXES.index(axis)] = 0.0
+    return with_memory(replace(long, source=f"{long.source}, of a section", **values))
+
+
+def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
+    """Return the errors of all runs: name, period [s], and for each axis error over motion.
+
+    Args:
+        folder: Working folder.
+    """
+    coefficients = section_coefficients(folder)
+    write_coefficients(folder / "coefficients", coefficients)
+    found = read_coefficients(folder / "coefficients")
+    results = []
+    for path in sorted(RUNS.glob("*.csv")):
+        if path.stem in LEFT_OUT:
+            continue
+        held = HELD[path.stem[0]]
+        period = PERIODS[int(path.stem[1:3]) - 1]
+        table = _read_run(path)
+        predicted = _predicted(_vessel(folder, found, held), found, table)
+        errors = {}
+        used = table["t_s"] >= BEGIN
+        for axis, column in SIGNALS.items():
+            if axis != held:
+                error = predicted[axis] - table[column]
+                motion = table[column] - table[column][~used].mean()
+                errors[axis] = float(
+                    np.sqrt(np.mean(error[used] ** 2) / np.mean(motion[used] ** 2))
+                )
+        results.append((path.stem, period, errors))
+    return results
+
+
+def _read_run(path: Path) -> dict[str, Array]:
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
+
+
+def _vessel(folder: Path, found: Coefficients, held: str) -> Vessel:
+    """Return the section; the rig holds the given degree of freedom, if any."""
+    stiffness = linear_stiffness(found, MASS, DEPTH)
+    text = TEXT.format(
+        mass=MASS,
+        depth=DEPTH,
+        inertia=INERTIA,
+        folder=(folder / "coefficients").resolve(),
+        heave=stiffness[2, 2],
+        roll=stiffness[3, 3],
+    )
+    if held:
+        text += f'\n[[effect]]\nuse = "held_freedom"\n{held} = 1.0\n'
+    return write_vessel(folder / f"section_{held or 'free'}", text)
+
+
+def _predicted(vessel: Vessel, found: Coefficients, table: dict[str, Array]) -> dict[str, Array]:
+    """Return the motion of the section under the measured wave, at the rows of the table."""
+    t, wave = table["t_s"], np.nan_to_num(table["wave_in_m"])
+    fine = np.arange(t[0], t[-1], 1.0 / RATE)
+    elevation = CubicSpline(t, wave)(fine)
+    # The waves run to port, which is the mirror of those to starboard
+    spectrum = np.fft.rfft(elevation)
+    w = 2.0 * np.pi * np.fft.rfftfreq(len(fine), 1.0 / RATE)
+    inside = (w >= found.frequency[0]) & (w <= found.frequency[-1])
+    loads = {}
+    for axis, channel, sign in (
+        ("sway", "Y_N", -1.0),
+        ("heave", "Z_N", 1.0),
+        ("roll", "K_Nm", -1.0),
+    ):
+        transfer = CubicSpline(found.frequency, found.excitation[:, 0, AXES.index(axis)])(
+            np.clip(w, found.frequency[0], found.frequency[-1])
+        )
+        loads[channel] = np.fft.irfft(spectrum * sign * transfer * inside, len(fine))
+    engine = OpenWater(vessel, step=1.0 / RATE)
+    rows = []
+    for i in range(len(fine)):
+        rows.append([engine.state.z, engine.state.phi])
+        engine.command({channel: float(values[i]) for channel, values in loads.items()})
+        engine.advance()
+    motion = np.array(rows)
+    return {
+        "heave": np.interp(t, fine, motion[:, 0]),
+        "roll": np.interp(t, fine, motion[:, 1]),
+    }
