@@ -442,6 +442,9 @@ def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(
             "rudder_rad",
             "thrust_N",
             "reference_helm_rad",
+            "reference_x_m",
+            "reference_y_m",
+            "reference_course_rad",
             "steer_port_rad",
             "contacts",
         ]

@@ -1815,6 +1815,7 @@ class DecideConfig:
         "calls none of its numbers estimated: there an effect is a stand-in more often than its "
         "own signs tell. Fitted to the identified effects of about 1,700 simulated logs of the "
         "seeds 12 to 16.",
+        low=-inf,
     )
     largest_refined_addition: float = setting(
         3.0,
