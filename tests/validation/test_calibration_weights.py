@@ -8,6 +8,7 @@ from validation.calibration.weights import (
     WeightPrior,
     cross_validated,
     fit_intercept,
+    fit_scale,
     fit_weights,
     weight_prior,
 )
@@ -63,3 +64,11 @@ def test_the_intercept_alone_makes_the_mean_probability_the_share_of_right_names
     intercept = fit_intercept(X @ TRUE, right)
     assert intercept == pytest.approx(INTERCEPT, abs=0.1)
     assert np.mean(expit(X @ TRUE + intercept)) == pytest.approx(right.mean(), abs=1e-3)
+
+
+def test_the_scale_of_log_odds_is_found_again() -> None:
+    rng = np.random.default_rng(3)
+    odds, beside = 2.0 * rng.standard_normal(40_000), rng.integers(0, 2, 40_000).astype(float)
+    right = (rng.random(40_000) < expit(0.6 * odds + 0.5 - 1.1 * beside)).astype(float)
+    found = fit_scale(odds, beside, right)
+    assert tuple(found) == pytest.approx((0.6, 0.5, -1.1), abs=0.05)

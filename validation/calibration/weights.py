@@ -13,11 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import expit
+from scipy.special import logit as log_odds
 
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
-from boatsim.diagnosis.open_set.probability import logistic_features
+from boatsim.diagnosis.open_set.probability import (
+    logistic_features,
+    probability_beside_unknown,
+    probability_of_true_cause,
+)
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from validation.calibration.table import right_names
 
@@ -148,6 +153,61 @@ def fit_intercept(odds: Array, right: Array) -> float:
     return float(minimize_scalar(loss).x)
 
 
+class LogOddsScale(NamedTuple):
+    """Regression of right names on their log odds in use: 1, 0 and 0 if these are calibrated."""
+
+    slope: float
+    intercept: float
+    beside_unknown: float  # further log odds of names beside an unknown cause
+
+
+def fit_scale(odds: Array, beside: Array, right: Array) -> LogOddsScale:
+    """Return the most probable scale of log odds.
+
+    Args:
+        odds: Log odds in use (N,).
+        beside: Whether there is an unknown cause beside the effect (N,), 0 or 1.
+        right: Outcomes (N,), 0 or 1.
+    """
+    Z = np.column_stack([odds, np.ones(len(odds)), beside])
+    sign = np.where(right > 0.0, -1.0, 1.0)
+
+    def loss(w: Array) -> float:
+        return float(np.sum(np.logaddexp(0.0, sign * (Z @ w))))
+
+    return LogOddsScale(*map(float, minimize(loss, np.array([1.0, 0.0, 0.0])).x))
+
+
+def stated_log_odds(records: Sequence[Record]) -> tuple[Array, Array, Array]:
+    """Return log odds in use, unknown causes beside, and outcomes of all effects, (N,) each.
+
+    Args:
+        records: Records of the campaign.
+    """
+    odds, beside, outcomes = [], [], []
+    for record in records:
+        truth = right_names(record)
+        log_signs = LogSigns(**record["signs"]["log"])
+        unknown = record["unknown"]["flag"] and not log_signs.estimated
+        for effect in record["signs"]["effects"]:
+            if effect["refines"]:
+                continue
+            found = logistic_features(
+                identified(effect),
+                effect["stochastic"],
+                consistency(effect["signs"]),
+                log_signs,
+                DEFAULT.decide,
+            )
+            probability = probability_of_true_cause(found, DEFAULT.decide)
+            if unknown:
+                probability = probability_beside_unknown(probability, DEFAULT.decide)
+            odds.append(log_odds(probability))
+            beside.append(float(unknown))
+            outcomes.append(float(bool(truth & {effect["name"], *effect["tied_with"]})))
+    return np.array(odds), np.array(beside), np.array(outcomes)
+
+
 def cross_validated(X: Array, right: Array, trials: Array, prior: WeightPrior) -> Array:
     """Return probabilities (N,), each from weights that were fitted to other trials."""
     found = np.zeros(len(X))
@@ -170,6 +230,12 @@ def print_weights(records: Sequence[Record], new: Collection[str] = ()) -> None:
     intercept, weights = fit_weights(X, right, prior)
     print(f"{len(right)} identified effects, {right.mean():.3f} right")
     print(f"intercept with the weights in use {fit_intercept(X @ prior.mean, right):.3g}")
+    # owners' records do not state whether a cause was unknown
+    scale = fit_scale(*stated_log_odds([one for one in records if "unknown" in one]))
+    print(
+        f"scale of the log odds in use: slope {scale.slope:.2f}, intercept {scale.intercept:.2f}, "
+        f"beside an unknown cause {scale.beside_unknown:.2f}"
+    )
     probabilities = np.clip(cross_validated(X, right, trials, prior), 1e-9, 1.0 - 1e-9)
     log_loss = -np.mean(np.log(np.where(right > 0, probabilities, 1.0 - probabilities)))
     print(f"cross-validated log loss {log_loss:.3f}")
