@@ -1799,12 +1799,10 @@ class DecideConfig:
     """
 
     least_probability: float = setting(
-        0.45,
+        0.5,
         "1",
         "Probability, together with look-alikes, from which an effect is named; below it an effect "
-        "is only reported as possible. It is a little below one half, because a true effect that "
-        "is not named is reported as an unknown cause, and because the law of a real effect never "
-        "has exactly the form of a candidate, which lowers its probability.",
+        "is only reported as possible: it is more probably a stand-in.",
         0.0,
         1.0,
     )
