@@ -193,6 +193,8 @@ def tune(
         for known in designs:
             if known.gains == gains_by_name:
                 return known.cost
+        if len(designs) >= budget:  # the first simplex may ask for more
+            return WORST
         report("closed loops", len(designs) / (budget + 2), f"cost {_best(designs).cost:.3g}")
         designs.append(search.judged(gains_by_name, drawn))
         return designs[-1].cost
