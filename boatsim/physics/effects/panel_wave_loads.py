@@ -75,7 +75,7 @@ class PanelWaveLoads(SeaParameters, Force):
 
     formula: ClassVar[str] = (
         r"\begin{aligned} \tau_j &= \operatorname{Re} \sum_i a_i X_j(\omega_i, \gamma_i - \psi) "
-        r"\, e^{\mathrm{i} \theta_i}, \quad j = 1, \dots, 6 \\ \theta_i &= \omega_i t - k_i \left("
+        r"\, e^{\mathrm{i} \theta_i}, \quad j = 1, \ldots, 6 \\ \theta_i &= \omega_i t - k_i \left("
         r"(x - V_N t) \cos\gamma_i + (y - V_E t) \sin\gamma_i\right) + \epsilon_i, \quad "
         r"\omega_i^2 = g k_i \tanh k_i h \end{aligned}"
     )
