@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from alike import long
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import candidate_library
@@ -197,7 +198,7 @@ FAN = np.arange(len(FANS)) == 2  # the third one, b1
     ("changed", "name", "parameter", "true"),
     [
         ({"lags": 0.12 * FAN}, "drive_lag_b1_N", "time_constant", 0.12),
-        ({"delays": 5 * FAN}, "drive_delay_b1_N", "delay", 5 / RATE),
+        long({"delays": 5 * FAN}, "drive_delay_b1_N", "delay", 5 / RATE),
         ({"rates": np.where(FAN, 0.3, np.inf)}, "drive_rate_limit_b1_N", "rate", 0.3),
     ],
 )
