@@ -31,6 +31,7 @@ def complex_loads(frequency: float, toward: float) -> Array:
     return np.asarray(start - 1j * later)
 
 
+@pytest.mark.slow
 def test_loads_between_the_points_of_the_table_are_those_of_a_spline() -> None:
     found = read_coefficients(OTTER)
     largest = np.abs(found.excitation).max(axis=(0, 1))

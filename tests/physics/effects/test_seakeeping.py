@@ -66,6 +66,7 @@ def test_section_integrals(s: float, taper: float) -> None:
     assert wave_slope_integrals(s, taper) == pytest.approx((even, odd), rel=1e-8, abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("height", "period", "wanted"), [(0.88, 7.5, 2.09), (1.88, 8.8, 3.48)])
 def test_slope_is_that_of_the_spectrum_up_to_the_cut(
     height: float, period: float, wanted: float
