@@ -24,8 +24,7 @@ BANDWIDTH_SHARE = 0.1
 # of the natural frequency: the integral action is ten times slower than the loop (Fossen 2021,
 # section 15.3.4)
 INTEGRAL_SHARE = 0.1
-# of its largest thrust: below it an azimuth thruster turns slowly, as its direction matters little.
-# With 0.1 those of `osv` turn by 185 instead of 710 deg/min in osv/station, with equal errors.
+# of its largest thrust: below it an azimuth thruster turns slowly, as its direction matters little
 CALM = 0.1
 # of full thrust: a smaller difference between demanded and given force is that of the allocation
 # and no saturation. The integral action must not react to it, or a mean error would remain.

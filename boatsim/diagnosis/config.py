@@ -1790,9 +1790,8 @@ class DecideConfig:
     the name from the nonlinear damping and the dry friction of real recordings, whose laws are
     never exactly those of a candidate, as those of a simulated cause are.
     All weights were then multiplied by 0.85, and 0.3 was added to the intercept, together with
-    `odds_beside_unknown`: over 1,700 logs of the seeds 12 to 16 the log odds were too far from zero
-    on both sides. A regression of right names on the log odds gave slopes of 0.5 to 0.7 for each of
-    these seeds; a slope below 0.85 would state no name at 0.99 or more.
+    `odds_beside_unknown`, because the log odds were too far from zero on both sides in logs of the
+    seeds 12 to 16: `--weights` prints the scale that fits a folder of logs best.
     `python -m validation.calibration --weights` fits weights to the logs that it has diagnosed.
     Each multiplies a feature of `boatsim.diagnosis.open_set.probability`. The settings `least_...`,
     `largest_...` and `..._range` at the end limit these features.
@@ -1811,8 +1810,7 @@ class DecideConfig:
         "nats",
         "Added to the log odds of an effect where an unknown cause is reported and the vessel file "
         "calls none of its numbers estimated: there an effect is a stand-in more often than its "
-        "own signs tell. Fitted to the identified effects of about 1,700 simulated logs of the "
-        "seeds 12 to 16.",
+        "own signs tell. Chosen with simulated logs of the seeds 12 to 16.",
         low=-inf,
     )
     largest_refined_addition: float = setting(
