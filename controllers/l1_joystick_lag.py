@@ -4,17 +4,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from boatsim.control.joystick import AdaptiveJoystick
+from boatsim.control.lag_joystick import HEADING_SHARE, RESERVE
 from boatsim.physics.base import UNSET, param
 
-# [s] delay or lag that a boat may have in addition to the known ones. With it, 95 % of randomly
-# drawn scale boats survive an additional delay of 0.4 s (docs/robustness.md).
-RESERVE = 0.3
 # of the low-pass bandwidth in yaw: at half the assumed input gain, bandwidth and pole are then
 # equal, and L1 norm times slope has the value 2 / e = 0.74
 POLE_SHARE = 0.5
 # of the pole: the L1-norm condition needs more than 1, and noise of the speed log needs little
 SURGE_SHARE = 1.2
-HEADING_SHARE = 0.2  # of the bandwidth in yaw: a fifth separates heading from rate
 
 
 @dataclass

@@ -212,6 +212,30 @@ Trusted = Annotated[
     typer.Option("--trust", help="Run Python files in the folders of the files given here."),
 ]
 
+BoatCount = Annotated[
+    int, typer.Option("--boats", min=1, metavar="N", help="Number of drawn boats.")
+]
+BoatSeed = Annotated[
+    int, typer.Option("--seed", min=0, metavar="N", help="Random seed of draws and sensor noise.")
+]
+BoatDraws = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--draw",
+        metavar="KEY=LAW(...)",
+        help="Draw a number of the vessel differently, such as body.mass=uniform(4,6). Repeatable.",
+    ),
+]
+BoatSpread = Annotated[
+    float,
+    typer.Option(
+        "--spread",
+        min=0.0,
+        metavar="FACTOR",
+        help="Factor of the usual spread of the boats; 0: all as in the vessel file.",
+    ),
+]
+
 
 def exits_with_code(command: Callable[P, int | None]) -> Callable[P, None]:
     """Decorate a command so that it exits with the code it returns and prints errors in one line.
@@ -923,26 +947,10 @@ def robustness(
         typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Vessel whose boats are drawn."),
     ],
     load: Load = None,
-    boats: Annotated[int, typer.Option(min=1, metavar="N", help="Number of drawn boats.")] = 200,
-    seed: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Random seed of draws and sensor noise.")
-    ] = 0,
-    draw: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=LAW(...)",
-            help="Draw a number of the vessel differently, such as body.mass=uniform(4,6). "
-            "Repeatable.",
-        ),
-    ] = None,
-    spread: Annotated[
-        float,
-        typer.Option(
-            min=0.0,
-            metavar="FACTOR",
-            help="Factor of the usual spread of the boats; 0: all as in the vessel file.",
-        ),
-    ] = 1.0,
+    boats: BoatCount = 200,
+    seed: BoatSeed = 0,
+    draw: BoatDraws = None,
+    spread: BoatSpread = 1.0,
     disturbance: Annotated[
         list[str] | None,
         typer.Option(
@@ -1001,26 +1009,10 @@ def tune(
             help="Gain to tune, within a range. Repeatable [default: those the controller names].",
         ),
     ] = None,
-    boats: Annotated[int, typer.Option(min=1, metavar="N", help="Number of drawn boats.")] = 50,
-    seed: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Random seed of draws and sensor noise.")
-    ] = 0,
-    draw: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=LAW(...)",
-            help="Draw a number of the vessel differently, such as body.mass=uniform(4,6). "
-            "Repeatable.",
-        ),
-    ] = None,
-    spread: Annotated[
-        float,
-        typer.Option(
-            min=0.0,
-            metavar="FACTOR",
-            help="Factor of the usual spread of the boats; 0: all as in the vessel file.",
-        ),
-    ] = 1.0,
+    boats: BoatCount = 50,
+    seed: BoatSeed = 0,
+    draw: BoatDraws = None,
+    spread: BoatSpread = 1.0,
     disturbance: Annotated[
         list[str] | None,
         typer.Option(

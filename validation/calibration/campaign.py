@@ -14,13 +14,12 @@ from rich.progress import Progress
 from boatsim.diagnosis.config import DEFAULT, DecideConfig
 from boatsim.diagnosis.open_set.log_signs import LogSigns
 from boatsim.diagnosis.open_set.probability import (
-    logistic_features,
     probability_beside_unknown,
     probability_of_true_cause,
 )
 from validation.calibration.unknown_causes import UNKNOWN
 from validation.calibration.vessels import BOATS, PLANS
-from validation.calibration.weights import consistency, identified
+from validation.calibration.weights import recorded_features
 from validation.practice.cause import Maker, Rng
 from validation.practice.make import CALIBRATION, Trial, make_trial
 
@@ -167,9 +166,7 @@ def decided_again(record: Record, config: DecideConfig) -> Record:
         if own is None:
             (named if effect in record["effects"] else possible).append(effect)
             continue
-        found = logistic_features(
-            identified(own), own["stochastic"], consistency(own["signs"]), of_log, config
-        )
+        found = recorded_features(own, of_log, config)
         probability = probability_of_true_cause(found, config)
         if beside_unknown:
             probability = probability_beside_unknown(probability, config)

@@ -13,16 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import expit
-from scipy.special import logit as log_odds
 
-from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.config import DEFAULT, DecideConfig
 from boatsim.diagnosis.open_set.consistency import Consistency, Factor, Variation
 from boatsim.diagnosis.open_set.log_signs import LogSigns
-from boatsim.diagnosis.open_set.probability import (
-    logistic_features,
-    probability_beside_unknown,
-    probability_of_true_cause,
-)
+from boatsim.diagnosis.open_set.probability import logistic_features
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from validation.calibration.table import right_names
 
@@ -59,18 +54,26 @@ def examples(records: Sequence[Record]) -> tuple[list[str], Array, Array, Array]
         for effect in signs["effects"]:
             if effect["refines"]:  # a better value of an estimated number, and no name
                 continue
-            found = logistic_features(
-                identified(effect),
-                effect["stochastic"],
-                consistency(effect["signs"]),
-                log_signs,
-                DEFAULT.decide,
-            )
+            found = recorded_features(effect, log_signs, DEFAULT.decide)
             names = list(found)
             rows.append(list(found.values()))
             right.append(bool(truth & {effect["name"], *effect["tied_with"]}))
             trials.append(number)
     return names, np.array(rows), np.array(right, dtype=float), np.array(trials)
+
+
+def recorded_features(
+    effect: dict[str, Any], log_signs: LogSigns, config: DecideConfig
+) -> dict[str, float]:
+    """Return the features of a recorded effect, by name.
+
+    Args:
+        effect: Its entry of the signs in diagnosis.json.
+        log_signs: Signs of the log.
+        config: Settings of the decision.
+    """
+    signs = consistency(effect["signs"])
+    return logistic_features(identified(effect), effect["stochastic"], signs, log_signs, config)
 
 
 def identified(entry: dict[str, Any]) -> IdentifiedEffect:
@@ -178,34 +181,19 @@ def fit_scale(odds: Array, beside: Array, right: Array) -> LogOddsScale:
     return LogOddsScale(*map(float, minimize(loss, np.array([1.0, 0.0, 0.0])).x))
 
 
-def stated_log_odds(records: Sequence[Record]) -> tuple[Array, Array, Array]:
-    """Return log odds in use, unknown causes beside, and outcomes of all effects, (N,) each.
+def beside_unknown_causes(records: Sequence[Record]) -> Array:
+    """Return whether each example has an unknown cause beside it (N,), 0 or 1.
 
     Args:
-        records: Records of the campaign.
+        records: Records of the campaign, in the order of the examples.
     """
-    odds, beside, outcomes = [], [], []
+    found = []
     for record in records:
-        truth = right_names(record)
-        log_signs = LogSigns(**record["signs"]["log"])
-        unknown = record["unknown"]["flag"] and not log_signs.estimated
+        beside = record["unknown"]["flag"] and not record["signs"]["log"].get("estimated")
         for effect in record["signs"]["effects"]:
-            if effect["refines"]:
-                continue
-            found = logistic_features(
-                identified(effect),
-                effect["stochastic"],
-                consistency(effect["signs"]),
-                log_signs,
-                DEFAULT.decide,
-            )
-            probability = probability_of_true_cause(found, DEFAULT.decide)
-            if unknown:
-                probability = probability_beside_unknown(probability, DEFAULT.decide)
-            odds.append(log_odds(probability))
-            beside.append(float(unknown))
-            outcomes.append(float(bool(truth & {effect["name"], *effect["tied_with"]})))
-    return np.array(odds), np.array(beside), np.array(outcomes)
+            if not effect["refines"]:
+                found.append(float(beside))
+    return np.array(found)
 
 
 def cross_validated(X: Array, right: Array, trials: Array, prior: WeightPrior) -> Array:
@@ -231,7 +219,11 @@ def print_weights(records: Sequence[Record], new: Collection[str] = ()) -> None:
     print(f"{len(right)} identified effects, {right.mean():.3f} right")
     print(f"intercept with the weights in use {fit_intercept(X @ prior.mean, right):.3g}")
     # owners' records do not state whether a cause was unknown
-    scale = fit_scale(*stated_log_odds([one for one in records if "unknown" in one]))
+    known = [record for record in records if "unknown" in record]
+    _, own, outcomes, _ = examples(known)
+    beside = beside_unknown_causes(known)
+    odds = prior.intercept + own @ prior.mean + DEFAULT.decide.odds_beside_unknown * beside
+    scale = fit_scale(odds, beside, outcomes)
     print(
         f"scale of the log odds in use: slope {scale.slope:.2f}, intercept {scale.intercept:.2f}, "
         f"beside an unknown cause {scale.beside_unknown:.2f}"
