@@ -1,7 +1,7 @@
 """Python interface: vessels, scenarios, runs, recordings, diagnoses, replays and sweeps.
 
 Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes
-are SNAME, as in files. Input that can not be used raises `boatsim.errors.BadInput` with a message
+are SNAME, as in files. Input that cannot be used raises `boatsim.errors.BadInput` with a message
 of one line, an argument of a wrong type a `TypeError` with its name.
 """
 
@@ -423,7 +423,7 @@ def run(
 
     Raises:
         BadInput: If scenario, controller and vessel do not fit each other.
-        BadPhysics: If the vessel can not be simulated.
+        BadPhysics: If the vessel cannot be simulated.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
@@ -501,7 +501,7 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
         The recording in SI units, with the names of boatsim's columns.
 
     Raises:
-        BadInput: One line with file, row and column of what can not be used.
+        BadInput: One line with file, row and column of what cannot be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
@@ -532,7 +532,7 @@ def export(recording: Name | Recording | Run, path: Name) -> int:
         Number of messages.
 
     Raises:
-        BadInput: If the recording can not be read, or `mcap` and `rosbags` are not installed.
+        BadInput: If the recording cannot be read, or `mcap` and `rosbags` are not installed.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1")
@@ -574,7 +574,7 @@ def diagnose(
         The identified effects, their parameters and the errors on held-out data.
 
     Raises:
-        BadInput: If a recording, name or setting can not be used.
+        BadInput: If a recording, name or setting cannot be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
@@ -624,7 +624,7 @@ def replay(
         free run.
 
     Raises:
-        BadInput: If the recording or the vessel can not be used.
+        BadInput: If the recording or the vessel cannot be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
@@ -676,7 +676,7 @@ def sweep(
         The results of all runs, with statistics of their metrics.
 
     Raises:
-        BadInput: If a scenario, key, distribution or metric can not be used.
+        BadInput: If a scenario, key, distribution or metric cannot be used.
 
     >>> import boatsim
     >>> done = boatsim.sweep(
@@ -728,7 +728,7 @@ def wave_field(scenario: Name | Scenario, seed: int | None = None) -> WaveField:
         The waves, none in calm water.
 
     Raises:
-        BadInput: If the scenario can not be used.
+        BadInput: If the scenario cannot be used.
 
     >>> import boatsim
     >>> sea = boatsim.wave_field("eastward_ho/seas_30", seed=1)

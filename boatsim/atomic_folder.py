@@ -31,7 +31,7 @@ def atomic_folder(folder: Path, keep: str | None = None) -> Iterator[Path]:
     Raises:
         BadInput: If `folder` or the path of one of the files is something else.
         BoatsimError: If the disk is full and `keep` was kept.
-        OSError: If a file can not be written.
+        OSError: If a file cannot be written.
     """
     if folder.exists() and not folder.is_dir():
         raise BadInput(f"{folder}: is a file; what is written needs a folder")

@@ -209,7 +209,7 @@ def _allowed_keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[
 class AppendedFile:
     """A file to which pieces of data are appended, each of them completely or not at all.
 
-    A piece that can not be written, as on a full disk, leaves no trace.
+    A piece that cannot be written, as on a full disk, leaves no trace.
     """
 
     def __init__(self, file: IO[bytes], path: Path, whole: int = 0) -> None:

@@ -28,7 +28,7 @@ def export_recording(path: Path, out: Path | None, vessel: str | None, load: Seq
         Exit code.
 
     Raises:
-        BadInput: If the recording can not be read, or a library is not installed.
+        BadInput: If the recording cannot be read, or a library is not installed.
     """
     if out is None:
         out = path.with_suffix(MCAP_SUFFIX)
@@ -57,7 +57,7 @@ def export_vessel(name: str, out: Path | None, fmi: str, step: float, load: Sequ
         Exit code.
 
     Raises:
-        BadInput: If the vessel can not be read, or there is no C compiler.
+        BadInput: If the vessel cannot be read, or there is no C compiler.
     """
     vessel = load_vessel(name, load)
     if out is None:

@@ -25,7 +25,7 @@ def open_results(folders: Sequence[Path], out: Path | None, browser: bool | None
 
     Raises:
         BadInput: A folder does not exist, or another file would be replaced.
-        OSError: The index page can not be written.
+        OSError: The index page cannot be written.
     """
     for folder in folders:
         if folder.is_file():

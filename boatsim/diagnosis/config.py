@@ -1007,7 +1007,7 @@ class ChecksConfig:
     time_max_step: float = setting(
         5.0,
         "s",
-        "Rows further apart can not be followed on a hull of 1.2 m, which then travels four "
+        "Rows further apart cannot be followed on a hull of 1.2 m, which then travels four "
         "lengths.",
         low=0.01,
     )

@@ -758,7 +758,7 @@ def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]
     if missing:
         raise BadInput(
             f"{recording.origin}: column {missing[0]} is missing, without which "
-            f"{vessel.name} can not be followed"
+            f"{vessel.name} cannot be followed"
         )
 
 

@@ -49,7 +49,7 @@ def results_without_fit(
         if not any(len(force.t) for force in forces):
             raise BadInput(
                 f"{where}: {problem.program.vessel.name} moves so fast between two rows that its "
-                "missing force can not be estimated, not even with a larger disturbance; record "
+                "missing force cannot be estimated, not even with a larger disturbance; record "
                 "at a higher rate"
             )
         places = find_divergences(problem, everything, forces)

@@ -95,7 +95,7 @@ def fit_boat(
         report: Called with the progress.
 
     Raises:
-        BadInput: If a recording can not be used.
+        BadInput: If a recording cannot be used.
     """
     report(f"reading {len(logs) + len(held_out)} logs")
     opened: list[Recording] = []
@@ -124,7 +124,7 @@ def fit_boat(
             )
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
-            f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"
+            f"{logs[0]}: {boat.name} cannot follow this recording ({error}); are its units right?"
         ) from None
     return FittedBoat(boat, problem, best, judge, before, after)
 

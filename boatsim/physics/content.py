@@ -246,7 +246,7 @@ def import_module_file(path: Path, name: str) -> ModuleType:
     loader = _UncachedLoader(name, str(path))
     spec = importlib.util.spec_from_file_location(name, path, loader=loader)
     if spec is None or spec.loader is None:
-        raise BadInput(f"{path}: can not be imported")
+        raise BadInput(f"{path}: cannot be imported")
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     try:

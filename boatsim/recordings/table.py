@@ -399,7 +399,7 @@ def read(
         turns_over: Whether the vessel may roll to any angle, so that its roll runs on.
 
     Raises:
-        BadInput: One line with file, row and column of what can not be used.
+        BadInput: One line with file, row and column of what cannot be used.
     """
     path, channels = recording_file(path), channels or {}
     found = notes_for(path)
@@ -526,7 +526,7 @@ def _read_raw(path: Path) -> Raw:
         limits.check_table_size(path, len(found.columns))
         return found
     except OSError as error:
-        raise file_error(path, f"can not be read ({error.strerror})") from error
+        raise file_error(path, f"cannot be read ({error.strerror})") from error
 
 
 def _rename_columns(

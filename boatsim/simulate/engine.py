@@ -66,8 +66,8 @@ class Engine(Stepper):
             **options: Options of `world.build_model`.
 
         Raises:
-            BadInput: If the hull can not be read.
-            BadPhysics: If the model can not be stepped.
+            BadInput: If the hull cannot be read.
+            BadPhysics: If the model cannot be stepped.
         """
         super().__init__(vessel, step)
         self.tank = tank or world.open_water(vessel)

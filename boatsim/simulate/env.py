@@ -149,7 +149,7 @@ class BoatPhysics(Physics):
         return restore(*arguments)
 
     def __reduce__(self) -> tuple[Callable[..., "BoatPhysics"], tuple[object, ...]]:
-        """Pickle vessel, tank and state, because compiled callbacks can not be pickled."""
+        """Pickle vessel, tank and state, because compiled callbacks cannot be pickled."""
         e = self.engine
         return _restore_physics, (
             e.vessel,
@@ -285,9 +285,9 @@ def load(
         flat_observation: Whether the observation is one array.
 
     Raises:
-        BadInput: If the vessel can not turn and move sideways, or the period is not a whole number
+        BadInput: If the vessel cannot turn and move sideways, or the period is not a whole number
             of steps.
-        BadPhysics: If the model can not be stepped.
+        BadPhysics: If the model cannot be stepped.
     """
     one = scenarios.load(scenario) if isinstance(scenario, str) else scenario
     file, period = one.file, one.controller.period

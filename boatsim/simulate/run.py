@@ -70,7 +70,7 @@ class Simulation:
 
         Raises:
             BadInput: If the controller fails or the log lacks a signal that will be evaluated.
-            BadPhysics: If the engine can not be built.
+            BadPhysics: If the engine cannot be built.
         """
         self._scenario = scenario
         self._options = options or RunOptions()
@@ -251,8 +251,8 @@ def build_engine(scenario: Scenario, seed: int | None = None) -> Engine | OpenWa
         The engine.
 
     Raises:
-        BadInput: If the hull can not be read.
-        BadPhysics: If the model can not be stepped.
+        BadInput: If the hull cannot be read.
+        BadPhysics: If the model cannot be stepped.
     """
     file, number = scenario.file, seed_or_default(scenario, seed)
     effects = tuple(effect.with_seed(number) for effect in scenario.vessel.effects)

@@ -123,10 +123,10 @@ def run_into_folder(
         The run with its metrics.
 
     Raises:
-        BadInput: If the scenario can not be run.
+        BadInput: If the scenario cannot be run.
         BadPhysics: If the motion diverges.
         BoatsimError: If the disk is full; the message names the folder with the data until then.
-        OSError: If a file can not be written.
+        OSError: If a file cannot be written.
     """
     options = options or RunOptions()
     seed = seed_or_default(scenario, options.seed)
@@ -204,7 +204,7 @@ def write_metrics(path: Path, content: RunEntry) -> None:
         content: Its content.
 
     Raises:
-        OSError: If it can not be written.
+        OSError: If it cannot be written.
     """
     with replace_file(path) as temporary:
         temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
@@ -229,13 +229,13 @@ class MetricsSoFar:
             so_far: Returns the run up to the present.
 
         Raises:
-            OSError: If the file can not be written.
+            OSError: If the file cannot be written.
         """
         begin = monotonic()
         if begin < self._due:
             return
         run = so_far()
-        # an incomplete log causes warnings; what can not be evaluated at all is reported at the end
+        # an incomplete log causes warnings; what cannot be evaluated at all is reported at the end
         with suppress(BadInput), np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore")
             write_metrics(self._path, evaluation.to_json(run, evaluation.all_metrics(run)))
@@ -256,7 +256,7 @@ class CsvFile:
             path: Its path.
 
         Raises:
-            OSError: If it can not be written.
+            OSError: If it cannot be written.
         """
         self._file = AppendedFile(path.open("wb", buffering=0), path)
         self._has_header = False

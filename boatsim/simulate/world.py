@@ -95,7 +95,7 @@ def build_model(
         The model.
 
     Raises:
-        BadInput: If MuJoCo can not build the hull.
+        BadInput: If MuJoCo cannot build the hull.
         BadPhysics: If MuJoCo does not store the full mass matrix.
     """
     tank = tank or open_water(vessel)

@@ -38,7 +38,7 @@ def write_index(folders: Sequence[Path], path: Path) -> list[IndexEntry]:
 
     Raises:
         BadInput: There is another file of this name, which is not replaced.
-        OSError: The file can not be written.
+        OSError: The file cannot be written.
     """
     entries: dict[Path, IndexEntry] = {}
     for folder in folders:

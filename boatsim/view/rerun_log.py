@@ -90,7 +90,7 @@ class RerunLog:
             waves: Waves that move the surface of the water; None: it is still.
 
         Raises:
-            OSError: If the file can not be written; all methods may raise it.
+            OSError: If the file cannot be written; all methods may raise it.
         """
         self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
@@ -203,7 +203,7 @@ def write_diagnosis_log(
         scene: What is drawn.
 
     Raises:
-        OSError: If the file can not be written.
+        OSError: If the file cannot be written.
     """
     stream = Stream("boatsim_diagnosis", path)
     _send_axes(stream)
@@ -273,7 +273,7 @@ def write_comparison_log(path: Path | str, boats: Mapping[str, Boat], metrics: s
         metrics: Their metrics as a table in Markdown.
 
     Raises:
-        OSError: If the file can not be written.
+        OSError: If the file cannot be written.
     """
     stream = Stream("boatsim_compare", path)
     _send_axes(stream)

@@ -78,7 +78,7 @@ class RunPage:
             result: Content of norms.json.
 
         Raises:
-            OSError: If the file can not be written.
+            OSError: If the file cannot be written.
         """
         samples = self._log.samples()
         page = run_html(self._scenario, result, samples, self._scene, self._command, self._files())

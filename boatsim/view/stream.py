@@ -35,7 +35,7 @@ class Stream:
             viewer: Address of a viewer; None: none.
 
         Raises:
-            OSError: If the file can not be written.
+            OSError: If the file cannot be written.
         """
         self._streams: list[rr.RecordingStream] = []
         self._file = self._written = self._viewer = None

@@ -1,4 +1,4 @@
-"""A run compared with what it is of: the effects of its scenario act, and where they can not, it is
+"""A run compared with what it is of: the effects of its scenario act, and where they cannot, it is
 said."""
 
 import re

@@ -254,7 +254,7 @@ def test_values_that_are_not_allowed_are_refused_with_their_bounds(fmu: Make) ->
         boat.start()
         for values, said in (
             ({"x_m": 1.0}, "x_m can be set before the start only"),
-            ({"force_X_N": 1.0}, "force_X_N can not be set"),
+            ({"force_X_N": 1.0}, "force_X_N cannot be set"),
             ({"current.north": float("nan")}, "current.north = nan; allowed -5 to 5"),
         ):
             with pytest.raises(Exception, match="fmi3Error|status"):

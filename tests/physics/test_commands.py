@@ -155,7 +155,7 @@ def test_a_pulse_that_is_not_sent_is_the_neutral_one() -> None:
 @pytest.mark.parametrize(
     ("channel", "said"),
     [
-        ("low = 1.0, high = 7.0", "neutral is missing and can not be 0; allowed 1 to 7"),
+        ("low = 1.0, high = 7.0", "neutral is missing and cannot be 0; allowed 1 to 7"),
         ("low = 1.0, high = 7.0, neutral = 8.0", "neutral = 8; allowed 1 to 7"),
         ("low = 7.0, high = 1.0", "low = 7, high = 1; low must be below high"),
     ],

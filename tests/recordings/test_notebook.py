@@ -1,5 +1,5 @@
 """Recordings leave as Arrow tables and data frames with their units, and are shown as figures and
-as replays that can not harm the page around them."""
+as replays that cannot harm the page around them."""
 
 import re
 import sys

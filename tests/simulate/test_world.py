@@ -198,7 +198,7 @@ def restitution(boat: vessel.Vessel, speed: float, step: float) -> float:
 def test_a_wall_sends_a_hull_back_with_the_share_of_a_critically_damped_spring(
     boat: vessel.Vessel,
 ) -> None:
-    """Spring and damper that can not pull: v e^-wt (1 - wt) until the force is zero at wt = 2, so e^-2."""
+    """Spring and damper that cannot pull: v e^-wt (1 - wt) until the force is zero at wt = 2, so e^-2."""
     assert restitution(boat, 0.5, 0.001) == pytest.approx(math.exp(-2.0), abs=0.02)
 
 

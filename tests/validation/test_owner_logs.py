@@ -2,6 +2,7 @@
 puts maps right."""
 
 import ast
+import re
 from dataclasses import replace
 from math import cos, sin
 from pathlib import Path
@@ -13,10 +14,15 @@ from alike import long
 
 from validation.owner_logs import boats, cases, faults
 from validation.owner_logs.causes import CAUSES
-from validation.owner_logs.commands import add_to_notes, parse_findings, run_boatsim
+from validation.owner_logs.commands import (
+    add_to_notes,
+    parse_findings,
+    parse_limits,
+    run_boatsim,
+)
 from validation.owner_logs.formats import earth
 from validation.owner_logs.instruments import drive_names, record_voyage, sample_instruments
-from validation.owner_logs.judge import Result
+from validation.owner_logs.judge import LIMITS, Result
 from validation.owner_logs.owner import correct_lines, correct_map
 from validation.owner_logs.pilot import pilot
 from validation.owner_logs.plant import (
@@ -252,6 +258,30 @@ def test_findings_are_read_from_what_check_prints() -> None:
     assert [(f.name, f.sure, f.lines) for f in found] == [
         ("heading_in_degrees", 0.99, ("[columns]", 'psi_rad = "psi_rad * deg"'))
     ]
+
+
+@pytest.mark.slow
+def test_what_a_log_cannot_tell_is_read_from_what_check_prints(tmp_path: Path) -> None:
+    boat = boats.launch(np.random.default_rng(4))
+    assert run_boatsim("new", tmp_path / "boat", *boat.options).code == 0
+    t = np.arange(0.0, 60.0, 0.2)
+    still = np.zeros_like(t)
+    thrust = np.where(np.remainder(t, 20.0) < 10.0, 0.5, 0.3) * boat.stated[0]
+    columns = {"t_s": t, "x_m": 1.5 * t, "y_m": still, "psi_rad": still}
+    columns |= dict.fromkeys(boat.channels, thrust) | dict.fromkeys(boat.helms, still)
+    np.savetxt(
+        tmp_path / "run.csv",
+        np.column_stack(list(columns.values())),
+        "%.6g",
+        ",",
+        header=",".join(columns),
+        comments="",
+    )
+    (tmp_path / "recording.toml").write_text('vessel = "./boat"\n')
+    checked = run_boatsim("check", tmp_path / "run.csv")
+    assert checked.code in (0, 1), checked.err
+    limits = parse_limits(checked)
+    assert [text for text in limits if re.search(LIMITS["never_turned"], text)]
 
 
 def test_the_goals_count_what_they_ask_for() -> None:

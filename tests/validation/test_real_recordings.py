@@ -38,7 +38,7 @@ def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
 ) -> None:
     _, ranking = roll.last_third_rows(windows, roll.open_release(roll.AT_REST)[0])
     assert {n.name for n in ranking.named} == {"steady_force"}
-    alike = {"steady_force", "roll_offset"}  # so small a roll can not tell them apart
+    alike = {"steady_force", "roll_offset"}  # so small a roll cannot tell them apart
     assert max(gain for name, gain in ranking.first.items() if name not in alike) < 4.0
 
 

@@ -88,7 +88,7 @@ def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
 def test_nothing_is_named_where_nothing_is_missing(case: str, tmp_path: Path) -> None:
     found = answer(NOTHING_TO_SEE[case](), tmp_path)
     assert found["verdict"] == "nothing_missing" and not named(found)
-    assert found["upper_limits"]  # what such data can not exclude
+    assert found["upper_limits"]  # what such data cannot exclude
 
 
 def test_a_run_at_rest_excludes_outer_forces_alone(tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ def test_heading_is_clockwise_and_roll_is_starboard_down():
 @pytest.mark.parametrize("content", [b"", b"RRF2", b"no log of ours at all " * 20])
 def test_a_file_that_is_no_log_gets_one_line(tmp_path, content):
     (tmp_path / "bad.rrd").write_bytes(content)
-    with pytest.raises(BadInput, match=r"bad.rrd: can not be read as .rrd") as caught:
+    with pytest.raises(BadInput, match=r"bad.rrd: cannot be read as .rrd") as caught:
         read(tmp_path / "bad.rrd")
     assert "\n" not in str(caught.value)
 

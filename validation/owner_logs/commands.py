@@ -62,6 +62,7 @@ class Finding:
 FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(probability (?P<sure>[\d.]+) %\)")
 ALLOWED = "a diagnosis allows for it"
 WRITE = "    write into recording.toml: "
+LIMIT = "  cannot be identified: "
 
 
 def parse_findings(result: CommandResult) -> list[Finding]:
@@ -80,12 +81,8 @@ def parse_findings(result: CommandResult) -> list[Finding]:
 
 
 def parse_limits(result: CommandResult) -> list[str]:
-    """Return the lines of `boatsim check` about quantities that cannot be identified."""
-    return [
-        line.strip()
-        for line in result.out.splitlines()
-        if line.startswith("  can not be identified: ")
-    ]
+    """Return what `boatsim check` says cannot be identified, without the title of each line."""
+    return [line.removeprefix(LIMIT) for line in result.out.splitlines() if line.startswith(LIMIT)]
 
 
 def add_to_notes(file: Path, lines: Sequence[str]) -> None:

@@ -159,9 +159,7 @@ class Judge:
         r, wrong = self.result, self.case.wrong
         result = self.call("check", run)
         found = parse_findings(result)
-        r.found = [f.name for f in found] + [
-            f"limit: {text[17:60]}" for text in parse_limits(result)
-        ]
+        r.found = [f.name for f in found] + [f"limit: {text[:40]}" for text in parse_limits(result)]
         if result.code == 2 or result.code == 99:
             r.trouble = f"check: {result.last}"
         if wrong is None:

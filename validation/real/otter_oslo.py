@@ -5,7 +5,7 @@ a group of the protocol (docs/protocol.md), with another program, load and water
 by itself. The runs come in two forms: the files as published, imported by the map that
 `boatsim import --propose` writes, and the files of runs_clean.
 
-The vessel, otter/vessel.toml, is Fossen's model in the plane. It can not express what the closed
+The vessel, otter/vessel.toml, is Fossen's model in the plane. It cannot express what the closed
 box of the vehicle does with a command between the revolutions that the program asks for and those
 of the shafts.
 """

@@ -3,7 +3,7 @@
 The section has no drive. Each run is driven by the measured incident wave alone. The nominal vessel
 consists of the published hydrostatics, natural periods and the pressure of the undisturbed wave
 (`section/vessel.toml`); coupling of sway and roll, diffraction, drift forces and the forces of the
-rig can not be expressed by published numbers. The figures are those of docs/protocol.md: free runs
+rig cannot be expressed by published numbers. The figures are those of docs/protocol.md: free runs
 from 20 s, at rest, to the end, relative to the rms of the signal.
 """
 

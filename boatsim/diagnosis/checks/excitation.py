@@ -1,4 +1,4 @@
-"""Check for motions that the log lacks, so that some coefficients can not be identified."""
+"""Check for motions that the log lacks, so that some coefficients cannot be identified."""
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig)
             _limit(
                 "one_speed",
                 f"the speed stays within {100.0 * variation:.0f} % of its mean",
-                "the growth of damping with speed can not be identified; sail at other speeds",
+                "the growth of damping with speed cannot be identified; sail at other speeds",
             )
         )
     return found
@@ -59,7 +59,7 @@ def _never_astern(recording: Recording, vessel: Vessel) -> list[Finding]:
         _limit(
             "never_astern",
             f"{', '.join(reversible)} never go astern",
-            "weak thrust astern can not be identified; go astern once",
+            "weak thrust astern cannot be identified; go astern once",
         )
     ]
 
@@ -77,7 +77,7 @@ def _never_moved(recording: Recording, vessel: Vessel, config: ChecksConfig) -> 
             _limit(
                 "never_moved",
                 "no command moves",
-                "thrust, steering and their delays can not be identified; if the boat was "
+                "thrust, steering and their delays cannot be identified; if the boat was "
                 "controlled, the log lacks its commands",
             )
         ]
@@ -86,7 +86,7 @@ def _never_moved(recording: Recording, vessel: Vessel, config: ChecksConfig) -> 
         _limit(
             "never_moved",
             f"{names} never move",
-            f"the effect and the delay of {names} can not be identified; move them",
+            f"the effect and the delay of {names} cannot be identified; move them",
         )
     ]
 
@@ -101,7 +101,7 @@ def _never_turned(recording: Recording, vessel: Vessel, config: ChecksConfig) ->
         _limit(
             "never_turned",
             f"the heading stays within {np.degrees(span):.0f} deg",
-            "wind or current can not be distinguished from a constant force of the hull; "
+            "wind or current cannot be distinguished from a constant force of the hull; "
             "turn to other headings",
         )
     ]

@@ -123,7 +123,7 @@ def compare_reinterpretations(
         "unchecked" on versions that could not be fitted.
 
     Raises:
-        BadInput: A recording can not be mapped to the vessel.
+        BadInput: A recording cannot be mapped to the vessel.
     """
     config = problem.config.checks
     vessel = problem.program.vessel

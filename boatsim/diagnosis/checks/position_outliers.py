@@ -72,7 +72,7 @@ def outlier_rows_at_start(
 ) -> int:
     """Return the number of rows to drop because a recording begins with outliers of its position.
 
-    A Kalman filter starts from the first fix and can not reject it. Each of the first fixes is
+    A Kalman filter starts from the first fix and cannot reject it. Each of the first fixes is
     therefore compared with a parabola through the fixes after it.
 
     Args:

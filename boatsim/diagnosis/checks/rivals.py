@@ -43,7 +43,7 @@ class FaultComparison:
             program: Program with further effects; None: that of the vessel as specified.
 
         Raises:
-            BadInput: A changed recording can not be mapped to the vessel.
+            BadInput: A changed recording cannot be mapped to the vessel.
         """
         first = self.problem
         used = program or first.program

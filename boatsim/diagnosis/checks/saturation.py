@@ -1,4 +1,4 @@
-"""Check for commands that stay at their limits, so that their gain can not be identified."""
+"""Check for commands that stay at their limits, so that their gain cannot be identified."""
 
 import math
 
@@ -13,7 +13,7 @@ from boatsim.recordings.table import Recording
 def check_saturation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
     """Find commands of a recording that are at a limit in most rows.
 
-    Their gain can not be identified. Limits that are the neutral value of the command do not count.
+    Their gain cannot be identified. Limits that are the neutral value of the command do not count.
 
     Args:
         recording: A prepared recording.
@@ -37,7 +37,7 @@ def check_saturation(recording: Recording, vessel: Vessel, config: ChecksConfig)
                         "saturated",
                         f"{name} is at its limit {limit:g} in {100.0 * share:.0f} % of the rows",
                         "limit",
-                        remedy="its gain and its nonlinearity can not be distinguished; "
+                        remedy="its gain and its nonlinearity cannot be distinguished; "
                         "record smaller commands too",
                     )
                 )

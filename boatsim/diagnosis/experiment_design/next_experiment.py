@@ -271,7 +271,7 @@ def expected_log_bayes_factors(
         A = V.T @ V
         B = V.T @ U
         M = np.eye(len(A)) + A
-        # effect of the posterior of the best hypothesis that the rival can not reproduce
+        # effect of the posterior of the best hypothesis that the rival cannot reproduce
         spread = np.trace(own) - np.trace(np.linalg.solve(M, A + B @ B.T))
         volume = np.linalg.slogdet(M)[1] - np.linalg.slogdet(np.eye(len(own)) + own)[1]
         gain = float(log_posterior - rival_posterior + 0.5 * (volume + spread))

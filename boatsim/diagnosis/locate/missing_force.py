@@ -2,7 +2,7 @@
 
 The missing force is what the vessel as specified lacks to move as recorded. The smoother follows
 the recording with a recalibrated vessel, because the error of a coefficient changes abruptly with
-the commands and a slowly varying force can not follow it. The change by the recalibration is then
+the commands and a slowly varying force cannot follow it. The change by the recalibration is then
 added with its uncertainty. Forces are averages over the correlation time of the disturbance.
 """
 

@@ -286,7 +286,7 @@ static bool set_variable(vessel_t *s, uint32_t reference, double value, char *me
             }
             snprintf(message, LONGEST_MESSAGE, "%s can be set before the start only", name);
             return false;
-        default: snprintf(message, LONGEST_MESSAGE, "%s can not be set", name); return false;
+        default: snprintf(message, LONGEST_MESSAGE, "%s cannot be set", name); return false;
     }
 }
 

@@ -357,14 +357,14 @@ class Vessel(ChannelBindings):
             The changed vessel.
 
         Raises:
-            BadInput: If a parameter can not be computed from the vessel's numbers.
+            BadInput: If a parameter cannot be computed from the vessel's numbers.
         """
         try:
             effect = effect.with_all_parameters(self)
         except (ArithmeticError, ValueError) as error:
             # A rule that divides by zero, or takes the root of a negative number
             raise BadInput(
-                f"{self.name}: {effect.name}: a parameter can not be computed from the vessel "
+                f"{self.name}: {effect.name}: a parameter cannot be computed from the vessel "
                 f"({error})"
             ) from None
         if not isinstance(effect, CoefficientRelease):

@@ -255,7 +255,7 @@ def _check_range(name: str, channel: CommandChannel, label: str) -> None:
         )
     if low <= neutral <= high:
         return
-    found = "neutral is missing and can not be 0"
+    found = "neutral is missing and cannot be 0"
     if "neutral" in channel.model_fields_set:
         found = f"neutral = {neutral:g}"
     raise BadInput(f"{label}: channels.{name}: {found}; allowed {low:g} to {high:g}")

@@ -37,7 +37,7 @@ def write_mcap(recording: Recording, path: Path) -> int:
 
     Raises:
         BadInput: If the name does not end in .mcap, or a library is not installed.
-        OSError: If the file can not be written; then no part of it is left.
+        OSError: If the file cannot be written; then no part of it is left.
     """
     if path.suffix.lower() != SUFFIX:
         raise BadInput(

@@ -100,7 +100,7 @@ def convert_log(
         channels: Allowed range (low, high) of the vessel's commands.
 
     Raises:
-        BadInput: One line with the key of the map for a signal that does not exist or can not be
+        BadInput: One line with the key of the map for a signal that does not exist or cannot be
             converted.
     """
     log = _with_continued_clocks(_with_time_of_map(log, map, file))

@@ -89,9 +89,9 @@ def missing_library_error(path: Path, library: str, extra: str) -> BadInput:
 
 
 def damaged_log_error(path: Path, what: str, error: BaseException) -> BadInput:
-    """Return the error of a log that the library of its format can not read."""
+    """Return the error of a log that the library of its format cannot read."""
     reason = " ".join(str(error).split())[:150] or type(error).__name__
-    return file_error(path, f"can not be read as {what} ({reason})")
+    return file_error(path, f"cannot be read as {what} ({reason})")
 
 
 @contextmanager

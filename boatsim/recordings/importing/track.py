@@ -301,7 +301,7 @@ def reason_poses_unusable(
             reasons.append(f"no heading: {_constant_words(named)}")
     if not reasons:
         return ""
-    return f"no usable poses ({'; '.join(reasons)}); it can not become a recording"
+    return f"no usable poses ({'; '.join(reasons)}); it cannot become a recording"
 
 
 def _is_unmeasured(g: Classification, track: Track | None) -> bool:

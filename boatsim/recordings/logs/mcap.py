@@ -65,7 +65,7 @@ def _read_topics(path: Path, topics: dict[str, Topic], remarks: list[str]) -> No
                 topics[name].add_message(record.log_time * 1e-9, record.data, room)
             except ValueError as error:
                 remarks.append(
-                    f"{path}: messages of {name} that can not be read are left out ({error})"
+                    f"{path}: messages of {name} that cannot be read are left out ({error})"
                 )
 
 

@@ -114,7 +114,7 @@ def _read_topics(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[s
                 topics[connection.topic].add_message(when * 1e-9, bytes(data), room)
             except ValueError as error:
                 remarks.append(
-                    f"{path}: messages of {connection.topic} that can not be read are left out "
+                    f"{path}: messages of {connection.topic} that cannot be read are left out "
                     f"({error})"
                 )
 

@@ -81,7 +81,7 @@ def track_of(name: str, colour: str, t: Array, signals: Mapping[str, Array]) -> 
 def replay_frame(title: str, tracks: Sequence[Track]) -> str:
     """Return the replay of tracks as a frame of HTML, isolated from the page that contains it.
 
-    Its script can not reach that page, and nothing is loaded from outside.
+    Its script cannot reach that page, and nothing is loaded from outside.
 
     Args:
         title: Title of the replay.

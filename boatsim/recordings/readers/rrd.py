@@ -58,7 +58,7 @@ def read(path: Path) -> Raw:
         if done.returncode == REFUSED:
             raise BadInput(done.stdout.decode("utf-8", "replace"))
         if done.returncode != 0:
-            raise BadInput(f"{path}: can not be read as .rrd (rerun's reader fails on it)")
+            raise BadInput(f"{path}: cannot be read as .rrd (rerun's reader fails on it)")
         with np.load(table, allow_pickle=False) as found:
             columns = {}
             for i, name in enumerate(found["names"]):
@@ -87,7 +87,7 @@ def read_columns(path: Path) -> dict[str, Array]:
     """Return the columns by name, each (N,).
 
     Raises:
-        BadInput: If the file can not be read; a damaged file may end the process.
+        BadInput: If the file cannot be read; a damaged file may end the process.
     """
     series: dict[str, tuple[list[Array], list[Array]]] = {}
     cells = 0
@@ -100,7 +100,7 @@ def read_columns(path: Path) -> dict[str, Array]:
             check_table_size(path, len(series), cells)
     except (ValueError, OSError, RuntimeError) as error:
         raise BadInput(
-            f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})"
+            f"{path}: cannot be read as .rrd ({' '.join(str(error).split())[:200]})"
         ) from error
     if not series:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")

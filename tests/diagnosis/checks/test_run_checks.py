@@ -204,7 +204,7 @@ def test_the_command_leaves_with_its_codes_and_one_line(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_nothing_is_advised_that_the_boat_can_not_do(tmp_path: Path) -> None:
-    """Thrusters that can not be turned are not told to turn, and one that can only push is not told
+    """Thrusters that cannot be turned are not told to turn, and one that can only push is not told
     to go astern."""
     boat = vessel.load_vessel("blueboat")
     log = simulate_log(boat, 1)

@@ -1,4 +1,4 @@
-"""A check of recordings that can not be computed is reported as a remark, not as a good result."""
+"""A check of recordings that cannot be computed is reported as a remark, not as a good result."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""A force along other axes than those of an effect can not take its place."""
+"""A force along other axes than those of an effect cannot take its place."""
 
 import numpy as np
 import pytest

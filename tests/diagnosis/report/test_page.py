@@ -1,4 +1,4 @@
-"""The report of a diagnosis: all the answer says is in it, it needs nothing else, and it can not be
+"""The report of a diagnosis: all the answer says is in it, it needs nothing else, and it cannot be
 broken into."""
 
 import os

@@ -171,7 +171,7 @@ def test_a_log_without_poses_gets_one_line():
         proposed(log)
     assert str(caught.value) == (
         "log.csv: no usable poses (no position: lat and lon are 0 in all 600 rows; no heading: "
-        "current_orientation_3 is 0 in all 600 rows); it can not become a recording"
+        "current_orientation_3 is 0 in all 600 rows); it cannot become a recording"
     )
 
 

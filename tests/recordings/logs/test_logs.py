@@ -435,7 +435,7 @@ def test_what_libraries_print_of_a_damaged_log_is_not_passed_on(tmp_path, capfd)
 @pytest.mark.parametrize("name, module", [("ros2.mcap", "mcap"), ("ros1.bag", "rosbag")])
 def test_a_chunk_that_would_unpack_to_more_than_is_stated_is_refused(monkeypatch, name, module):
     monkeypatch.setattr(f"boatsim.recordings.logs.{module}.MAX_CHUNK", 20_000)
-    assert "can not be read as" in line_of(open_log, LOGS / name)
+    assert "cannot be read as" in line_of(open_log, LOGS / name)
 
 
 @pytest.mark.parametrize(
