@@ -1,7 +1,8 @@
 """Run the rehearsal: `python -m validation.owner_logs --out DIR [--seed N] [--cases K]`.
 
 Every case has a folder with the logs, the vessel that `boatsim new` made, the map, the answer, and
-history.txt with each command and its output. The same seed gives the same logs.
+history.txt with each command and its output. The same seed gives the same logs. A run that was
+interrupted continues: a case whose folder has a result is not repeated.
 """
 
 import argparse
@@ -16,8 +17,16 @@ from validation.owner_logs.table import case_line, goal_rows
 
 
 def judge_case(case: Case, out: Path, log_only: bool) -> Result:
-    """Judge one case in its folder."""
-    return Judge(case, out / f"case_{case.number:02d}", log_only).judge()
+    """Judge one case in its folder, or return the result that the folder already has."""
+    folder = out / f"case_{case.number:02d}"
+    if (result := folder / "result.json").exists():
+        return read_result(result)
+    return Judge(case, folder, log_only).judge()
+
+
+def read_result(file: Path) -> Result:
+    """Read the result of a case."""
+    return Result(**json.loads(file.read_text(encoding="utf-8")))
 
 
 def print_results(results: list[Result]) -> None:
@@ -43,12 +52,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     if given.show:
-        print_results(
-            [
-                Result(**json.loads(f.read_text(encoding="utf-8")))
-                for f in sorted(given.out.glob("case_*/result.json"))
-            ]
-        )
+        print_results([read_result(file) for file in sorted(given.out.glob("case_*/result.json"))])
         return
     begin = time.time()
     all_of_them = cases(given.seed, given.cases)
