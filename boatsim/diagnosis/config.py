@@ -1068,10 +1068,10 @@ class ChecksConfig:
         0.2, "rad", "Smallest rotation of the heading that is compared; less is a compass error."
     )
     unexplained_max_share: float = setting(
-        0.6,
+        0.3,
         "1",
         "Unexplained force, relative to the force of the drives, from which reinterpretations "
-        "are compared.",
+        "are compared. It only saves time, because a comparison accuses no good log.",
     )
     unexplained_min_lever: float = setting(
         0.08,
@@ -1424,12 +1424,20 @@ class FitConfig:
     correlation_time_steps: int = setting(
         2, "count", "Halvings or doublings of the correlation time that are tested.", low=0
     )
+    simulated_step: float = setting(
+        0.25,
+        "prior sd",
+        "Largest change of a parameter for the derivatives of free runs. It lies far above "
+        "rounding, and a coefficient hardly bends the answer within it.",
+        1e-3,
+        1.0,
+    )
     undetermined_sd: float = setting(
         0.7,
         "prior sd",
-        "A coefficient with a larger posterior sd keeps the value of the vessel file: the "
-        "recordings then say less about it than the prior does, because precisions add up and "
-        "0.7 is the root of one half.",
+        "A coefficient with a larger posterior sd, given free runs over the recordings, keeps the "
+        "value of the vessel file: they then say less about it than the prior does, because "
+        "precisions add up and 0.7 is the root of one half.",
         0.0,
         1.0,
     )

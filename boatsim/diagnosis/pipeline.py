@@ -50,7 +50,10 @@ from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
-from boatsim.diagnosis.recalibration import decide_recalibration
+from boatsim.diagnosis.recalibration import (
+    decide_recalibration,
+    fix_undetermined_coefficients,
+)
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import (
     Baseline,
@@ -252,6 +255,7 @@ def _complete(selected: _Selected, begin: float, report: Report) -> Diagnosis:
     stages fails, the answer states the reason.
     """
     loaded, question, findings, decision = selected
+    decision = keep_undetermined_coefficients(question, decision)
     ranking, next_plan, failures = decision.ranking, None, list[str]()
     try:
         progress = report_part_of(report, *DESCRIBING)
@@ -456,6 +460,24 @@ def decide_causes(question: Question, selection: Selection) -> Decision:
     return judge_names(problem, ranking, question.held_out, len(question.candidates))
 
 
+def keep_undetermined_coefficients(question: Question, decision: Decision) -> Decision:
+    """Give coefficients that the recordings do not determine the value of the vessel file.
+
+    The selection has compared hypotheses with all coefficients free, so that its evidence and the
+    probabilities stay valid. Only a vessel with effects is changed here; without effects the
+    patched vessel is the recalibrated one (`adopt_refitted_coefficients`).
+
+    Args:
+        question: Held-out recordings.
+        decision: Selected effects with their probability.
+    """
+    ranking = decision.ranking
+    if not ranking.best.effects:
+        return decision
+    best = fix_undetermined_coefficients(decision.problem, ranking.best, question.held_out)
+    return replace(decision, ranking=replace(ranking, best=best))
+
+
 def describe_unexplained_force(
     question: Question, decision: Decision, report: Report = ignore_progress
 ) -> Ranking:
@@ -505,7 +527,6 @@ def adopt_refitted_coefficients(
     They are adopted if the recordings determine them, and if they do not make simulations of
     held-out recordings worse. The selection has compared hypotheses with all coefficients free, so
     that its evidence stays valid. Without effects the patched vessel is the recalibrated one.
-    Effects and formulas stay with the coefficients that they were fitted with.
 
     Args:
         question: Held-out recordings.

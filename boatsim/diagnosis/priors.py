@@ -17,6 +17,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 REFERENCE_LENGTH = 1.2  # [m] of the hull for which times of the configuration are given
+REFERENCE_BEAM = 0.44  # [m] of the same hull
 CHI_SQUARE_MEDIAN = 0.455  # of the square of a standard normal variable
 # Kinds of coefficients that are uncertain where no uncertainty is specified. Added mass is not one
 # of them, because its error is a candidate effect (`added_mass_error`). Settings are numbers, so
@@ -31,6 +32,11 @@ def froude_time_scale(vessel: Vessel) -> float:
     Times scale with the square root of the length (Froude's law).
     """
     return float(np.sqrt(vessel.length / REFERENCE_LENGTH))
+
+
+def area_scale(vessel: Vessel) -> float:
+    """Return the ratio of the area of a vessel, length times beam, to that of a hull of 1.2 m."""
+    return vessel.length * vessel.beam / (REFERENCE_LENGTH * REFERENCE_BEAM)
 
 
 def assumed_disturbance(vessel: Vessel, config: LoadConfig = DEFAULT.load) -> dict[str, float]:

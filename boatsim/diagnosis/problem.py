@@ -23,6 +23,7 @@ from boatsim.physics.base import (
     CoefficientRelease,
     DriftingMeasurement,
     Effect,
+    Force,
     Param,
 )
 from boatsim.physics.groups import group_of, name_in_group, without_group
@@ -585,9 +586,10 @@ class Problem:
     def scale_from_reference_hull(self, effect: Effect, name: str) -> float:
         """Return the ratio of a candidate effect's parameter to its value on the reference hull.
 
-        Quantities follow Froude's law. The threshold of a command scales with the largest command
-        recorded, because the full thrust of the reference hull is 1 N. The drift of an instrument
-        scales with its noise.
+        Quantities follow Froude's law. The force of a wind follows the area of the hull above the
+        water, because a wind is as strong for a small boat as for a large one. The threshold of a
+        command scales with the largest command recorded, because the full thrust of the reference
+        hull is 1 N. The drift of an instrument scales with its noise.
 
         Args:
             effect: A candidate.
@@ -601,6 +603,8 @@ class Problem:
             largest = largest_command(self.recordings, effect, self.config.load)
             if largest:
                 return largest
+        if isinstance(effect, Force) and type(effect).of_air and unit == "N":
+            return priors.area_scale(self.program.vessel)
         return froude_scale(unit, self.program.vessel)
 
     def _bounds(self, param: Param) -> tuple[float, float]:

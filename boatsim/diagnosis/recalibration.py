@@ -1,8 +1,8 @@
 """Decides which refitted coefficients are adopted.
 
-A coefficient that the recordings do not determine keeps the value of the vessel file. No
-coefficient is adopted if free runs over held-out recordings are worse with the refitted ones than
-with those of the file.
+A coefficient that simulations of the recordings do not determine keeps the value of the vessel
+file. No coefficient of the vessel without effects is adopted if free runs over held-out recordings
+are worse with the refitted ones than with those of the file.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,6 +16,7 @@ from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import FreeRun, free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
 from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.simulated_information import covariance_by_simulations
 from boatsim.physics.base import Array
 
 WRITTEN, REFITTED = "written", "refitted"  # the vessels that are compared
@@ -55,9 +56,9 @@ def decide_recalibration(
         refitted: The vessel model without candidate effects, its coefficients fitted.
         held_out: Held-out recordings, at least one.
     """
-    kept = undetermined_coefficients(refitted, problem.config.fit)
+    kept = undetermined_by_simulations(problem, refitted)
     names = tuple(f"{refitted.free[i].effect}.{refitted.free[i].name}" for i in kept)
-    found = fix_undetermined_coefficients(problem, refitted)
+    found = fix_coefficients(problem, refitted, kept)
     horizon = free_run_horizon(problem, held_out)
     runs = free_runs(problem, {WRITTEN: written, REFITTED: found}, held_out, horizon)
     harmed = generalization.harmed_groups(problem, written, found, held_out, horizon)
@@ -69,18 +70,43 @@ def decide_recalibration(
     return Recalibration(found, names, adopted, errors)
 
 
-def fix_undetermined_coefficients(problem: Problem, found: Fit) -> Fit:
-    """Return a fit in which coefficients that the recordings do not determine are held fixed.
+def fix_undetermined_coefficients(
+    problem: Problem, found: Fit, held_out: Sequence[MappedRecording]
+) -> Fit:
+    """Return a fit with effects whose undetermined coefficients have the value of the vessel file.
 
-    They have the value of the vessel file, and the other parameters are refitted. Noise
-    levels and evidence stay those of the hypothesis in which all coefficients are free. The
-    covariance is that of the posterior at the new values.
+    The same fit is returned if simulations of held-out recordings would become much worse: far from
+    the fit, its coefficients may depend on each other otherwise than near it.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Converged fit of the vessel model with some candidate effects.
+        held_out: Held-out recordings, at least one.
     """
-    kept = undetermined_coefficients(found, problem.config.fit)
+    fixed = fix_coefficients(problem, found, undetermined_by_simulations(problem, found))
+    if fixed is found:
+        return found
+    horizon = free_run_horizon(problem, held_out)
+    runs = free_runs(problem, {WRITTEN: fixed, REFITTED: found}, held_out, horizon)
+    before = generalization.mean_square_errors(runs, REFITTED)
+    if not before:
+        return fixed
+    after = generalization.mean_square_errors(runs, WRITTEN)
+    limit = problem.config.validate.group_harm**2
+    return fixed if generalization.error_ratio(after, before) <= limit else found
+
+
+def fix_coefficients(problem: Problem, found: Fit, kept: Sequence[int]) -> Fit:
+    """Return a fit in which some coefficients have the value of the vessel file.
+
+    The other parameters are refitted. Noise levels and evidence stay those of the hypothesis in
+    which all coefficients are free. The covariance is that of the posterior at the new values.
+
+    Args:
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
+        kept: Indices of those coefficients among the free parameters; none: the fit is returned.
+    """
     if not kept:
         return found
     theta = prior_arrays(found.free).mean
@@ -97,8 +123,19 @@ def fix_undetermined_coefficients(problem: Problem, found: Fit) -> Fit:
     return _move(found, theta)
 
 
+def undetermined_by_simulations(problem: Problem, found: Fit) -> list[int]:
+    """Return the indices of the fitted coefficients that free runs do not determine.
+
+    Args:
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        found: Converged fit of the vessel model with some candidate effects.
+    """
+    covariance = covariance_by_simulations(problem, found)
+    return undetermined_coefficients(replace(found, covariance=covariance), problem.config.fit)
+
+
 def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
-    """Return the indices of the fitted coefficients that the recordings do not determine.
+    """Return the indices of the fitted coefficients whose covariance does not determine them.
 
     The coefficient with the largest posterior sd, in prior sds, is held first. The others are then
     more certain, because the recordings may determine a combination of coefficients only, such as

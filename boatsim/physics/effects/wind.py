@@ -72,7 +72,7 @@ class Wind(Force):
         unit="N",
         words="side force with the wind on the beam",
         fit=True,
-        spread=0.15,
+        spread=2.1,  # 5 m/s on a side of 0.3 L B: 0.5 x 1.2 kg/m^3 x 0.9 x 25 m^2/s^2 x 0.158 m^2
     )
     toward: float = param(
         0.0,
