@@ -18,9 +18,9 @@ class Boat {
     Object.assign(this, { exports, model });
     this.initial = Object.fromEntries(Object.entries(model.arrays).map(([name, place]) => [name, numbers(place)]));
     this.at = Object.fromEntries(Object.entries(this.initial).map(([name, array]) => [name, putNumbers(exports, array)]));
-    this.size = model.motion.length + model.forces.length;
-    this.observed = exports.allocate(8 * this.size);
+    this.observed = exports.allocate(8 * model.observed.length);
     exports.place_boat(...model.order.map(name => this.at[name]));
+    if (model.wind) exports.place_wind(...model.wind.map(place => putNumbers(exports, numbers(place))));
   }
   view(at, count) { return new Float64Array(this.exports.memory.buffer, at, count); }
   array(name) { return this.view(this.at[name], this.initial[name].length); }
@@ -29,7 +29,7 @@ class Boat {
   advance() { this.exports.advance(this.model.step, this.at.actuators); }
   observe() {
     this.exports.observe(this.observed);
-    return [...this.view(this.observed, this.size)];
+    return [...this.view(this.observed, this.model.observed.length)];
   }
 }
 
@@ -107,19 +107,20 @@ function step() {
 
 function keepRow() {
   if (boat.time >= logDue - model.tolerance) logDue += model.log;
-  const observed = boat.observe(), motion = observed.slice(0, model.motion.length);
-  const row = [boat.time, ...model.shown.map(i => motion[i]), ...boat.array("commands"), ...boat.sent,
-    ...boat.array("actuators"), ...observed.slice(model.motion.length)];
+  const observed = boat.observe(), motion = model.motion.map(i => observed[i]);
+  const row = [boat.time, ...motion, ...boat.array("commands"), ...boat.sent, ...boat.array("actuators"),
+    ...model.forces.map(i => observed[i])];
   if (!motion.every(Number.isFinite)) over = `The motion is no longer finite at ${boat.time.toFixed(1)} s. Start again.`;
   else rows.push(Float64Array.from(row));
 }
 
 function show() {
-  const observed = boat.observe(), [x, y, psi] = ["x", "y", "psi"].map(name => observed[model.motion.indexOf(name)]);
+  const observed = boat.observe(), value = name => observed[model.observed.indexOf(name)] || 0;
+  const [x, y, psi] = ["x", "y", "psi"].map(value), wind = model.wind ? ["wind_X_N", "wind_Y_N"].map(value) : null;
   if (!Number.isFinite(x + y + psi)) { word(); return; }
   const commands = boat.array("commands"), actuators = boat.array("actuators");
   const channel = name => model.channels.findIndex(one => one.name === name);
-  take({ t: boat.time, x, y, psi, wind: null, contacts: 0, norms: {}, away,
+  take({ t: boat.time, x, y, psi, wind, contacts: 0, norms: {}, away,
     goals: hello.dials.map(({ key }) => [boat.sent[channel(key)], commands[channel(key)]]),
     thrusts: model.arrows.map(places => places.map(i => i < 0 ? 0 : actuators[i])) });
 }

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from boatsim.drive.task import DriveTask
 from boatsim.drive.telemetry import PageData
 from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, replace_file
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Force
 from boatsim.physics.signals import AXES, COMPONENTS, MeasuredMotion, motion_signals
 from boatsim.simulate.control_loop import TIME_TOLERANCE
 from boatsim.simulate.engine import State
@@ -71,13 +72,16 @@ def offline_page(task: DriveTask, compiler: WasmCompiler) -> str:
         NoWasmCompiler: The compiler fails.
     """
     scene, numbers = scene_of(task.scenario), PackedNumbers()
-    engine = engine_at_start(task)
+    engine, wind = engine_at_start(task), _engine_of_wind(task)
+    program = compile_driving_program(engine.program, compiler, wind.program if wind else None)
     content = {
         "hello": PageData(scene, task.dials, task.scenario).initial_data(ready=True),
         "simulation": {
             **_simulation(task, engine, scene, numbers),
+            **_recorded(task, engine, wind is not None),
             **_sticks(task),
-            "program": numbers.place_program(compile_driving_program(engine.program, compiler)),
+            "wind": None if wind is None else _places_of_wind(wind, numbers),
+            "program": numbers.place_program(program),
         },
     }
     text = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
@@ -103,10 +107,26 @@ def engine_at_start(task: DriveTask) -> OpenWater:
     return engine
 
 
+def _engine_of_wind(task: DriveTask) -> OpenWater | None:
+    """Return an engine of the vessel with its effects of air alone; None if it has none."""
+    vessel = task.scenario.vessel
+    effects = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
+    if not effects:
+        return None
+    seeded = tuple(effect.with_seed(task.scenario.file.seed) for effect in effects)
+    return OpenWater(replace(vessel, effects=seeded), task.scenario.file.step)
+
+
+def _places_of_wind(wind: OpenWater, numbers: PackedNumbers) -> list[tuple[int, int]]:
+    """Return the places of the arrays that `place_wind` of the program takes."""
+    fleet = wind.batch.fleet
+    return [numbers.place(array) for array in (fleet.act, fleet.p, fleet.on)]
+
+
 def _simulation(
     task: DriveTask, engine: OpenWater, scene: Scene, numbers: PackedNumbers
 ) -> dict[str, object]:
-    """Return what the script needs to simulate the vessel and to record the run."""
+    """Return what the script needs to simulate the vessel."""
     vessel, file = engine.vessel, task.scenario.file
     arrays: dict[str, Array] = {**engine.batch.fleet._asdict()}
     order = list(arrays)
@@ -116,29 +136,41 @@ def _simulation(
     for name, channel in vessel.commands.items():
         low, high = limits[name]
         channels.append({"name": name, "low": low, "high": high, "neutral": channel.neutral})
-    signals = motion_signals(vessel.dof)
-    forces = [f"force_{COMPONENTS[axis]}" for axis in AXES if axis in vessel.dof]
-    columns = ["t_s", *(signal.column for signal in signals), *vessel.commands, *vessel.measured]
-    columns += map("sent_{}".format, vessel.commands)
-    columns += map(f"{ACTUAL}{{}}".format, vessel.actuators)
-    columns += forces
     return {
         "step": file.step,
         "period": task.scenario.controller.period,
-        "log": file.log,
         "duration": file.duration,
         "tolerance": TIME_TOLERANCE,
         "arrays": {name: numbers.place(array) for name, array in arrays.items()},
         "order": order,
         "channels": channels,
-        "motion": MeasuredMotion._fields,
-        "shown": [MeasuredMotion._fields.index(signal.symbol) for signal in signals],
-        "forces": forces,
-        "columns": columns,
         "arrows": _arrows(scene, vessel.actuators),
         "scenario": task.scenario_around_goals(),
         "most_bytes": MAX_TOML_BYTES,
         "off": OFF,
+    }
+
+
+def _recorded(task: DriveTask, engine: OpenWater, wind: bool) -> dict[str, object]:
+    """Return what the script needs to record the run, with the columns of `boatsim run`.
+
+    `observed` are the values that the program writes; `motion` and `forces` are the places of those
+    that the recording has.
+    """
+    vessel, motion = engine.vessel, MeasuredMotion._fields
+    signals = motion_signals(vessel.dof)
+    forces = [f"force_{COMPONENTS[axis]}" for axis in AXES if axis in vessel.dof]
+    if wind:
+        forces += [force.replace("force_", "wind_") for force in forces]
+    columns = ["t_s", *(signal.column for signal in signals), *vessel.commands, *vessel.measured]
+    columns += map("sent_{}".format, vessel.commands)
+    columns += map(f"{ACTUAL}{{}}".format, vessel.actuators)
+    return {
+        "log": task.scenario.file.log,
+        "columns": [*columns, *forces],
+        "observed": [*motion, *forces],
+        "motion": [motion.index(signal.symbol) for signal in signals],
+        "forces": list(range(len(motion), len(motion) + len(forces))),
     }
 
 

@@ -43,11 +43,12 @@ def program_source(program: Program) -> str:
     return _source(translation, {**names, **sizes}, "recordings.c")
 
 
-def driving_source(program: Program) -> str:
+def driving_source(program: Program, wind: Program | None = None) -> str:
     """Return the C source of a program that simulates one vessel step by step.
 
     Args:
         program: The compiled program of a vessel.
+        wind: The program of the same vessel with its effects of air alone; None for none.
 
     Raises:
         NotTranslatable: A law has no C form.
@@ -69,6 +70,13 @@ def driving_source(program: Program) -> str:
     name, force = translation.translate_function(module.total_body_force, kinds)
     names |= {"TOTAL_BODY_FORCE": name, "force_t": force.c}
     names |= _record_types(translation, {"fleet_t": FleetArrays})
+    if wind is not None:
+        names |= {
+            "WIND_FORCE": translation.translate_function(wind.module.total_body_force, kinds)[0],
+            "WIND_HELD": wind.module.HELD,
+            "WIND_VALUES": len(wind.values()),
+            "WIND_EFFECTS": len(wind.effects),
+        }
     sizes = {
         "NQ": module.NQ,
         "HELD": module.HELD,
@@ -102,22 +110,26 @@ def compile_program(program: Program, compiler: WasmCompiler) -> bytes:
     return compile_to_wasm(program_source(program), compiler)
 
 
-def compile_driving_program(program: Program, compiler: WasmCompiler) -> bytes:
+def compile_driving_program(
+    program: Program, compiler: WasmCompiler, wind: Program | None = None
+) -> bytes:
     """Compile the part of a program that simulates one vessel step by step to WebAssembly.
 
     Args:
         program: The compiled program of a vessel.
         compiler: The compiler, from `find_compiler`.
+        wind: The program of the same vessel with its effects of air alone; None for none.
 
     Returns:
-        The binary module. It exports `memory`, `allocate`, `place_boat`, `advance` and `observe`
-        (`c/driving.c`), and imports functions of JavaScript's `Math` from the module `math`.
+        The binary module. It exports `memory`, `allocate`, `place_boat`, `advance`, `observe` and,
+        with wind, `place_wind` (`c/driving.c`), and imports functions of JavaScript's `Math` from
+        the module `math`.
 
     Raises:
         NotTranslatable: A law has no C form.
         NoWasmCompiler: The compiler fails.
     """
-    return compile_to_wasm(driving_source(program), compiler)
+    return compile_to_wasm(driving_source(program, wind), compiler)
 
 
 def _translated(translation: Translation, program: Program, function: str) -> dict[str, object]:

@@ -33,7 +33,19 @@ EXPORTED("advance") void advance(double dt, double *mean) {
     }
 }
 
-/* Write the motion of the boat (as `MeasuredMotion`) and the sum of all forces on it (NQ,) to out. */
+#ifdef WIND_FORCE
+/* The effects of air alone, as a second program: signals, parameters and switches. */
+static array1_t wind_act, wind_p, wind_on;
+
+EXPORTED("place_wind") void place_wind(double *act, double *p, double *on) {
+    wind_act = (array1_t){act, 3 * WIND_HELD};
+    wind_p = (array1_t){p, WIND_VALUES};
+    wind_on = (array1_t){on, WIND_EFFECTS};
+}
+#endif
+
+/* Write the motion of the boat (as `MeasuredMotion`), the sum of all forces on it (NQ,), and the sum
+   of those of the air (NQ,) if there are any, to `out`. */
 EXPORTED("observe") void observe(double *out) {
     array1_t y = row_of2(boat.f_y, 0);
     state_t state;
@@ -43,4 +55,8 @@ EXPORTED("observe") void observe(double *out) {
         boat.f_t.d[0], y, row_of2(boat.f_act, 0), 2 * HELD, row_of2(boat.f_p, 0), boat.f_on);
     memcpy(out, &motion, sizeof motion);
     memcpy(out + sizeof motion / sizeof(double), &force, sizeof force);
+#ifdef WIND_FORCE
+    force = WIND_FORCE(boat.f_t.d[0], y, wind_act, 2 * WIND_HELD, wind_p, wind_on);
+    memcpy(out + sizeof motion / sizeof(double) + NQ, &force, sizeof force);
+#endif
 }
