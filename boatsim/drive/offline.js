@@ -115,7 +115,7 @@ function keepRow() {
 }
 
 function show() {
-  const observed = boat.observe(), value = name => observed[model.observed.indexOf(name)] || 0;
+  const observed = boat.observe(), value = name => observed[model.observed.indexOf(name)] ?? 0;
   const [x, y, psi] = ["x", "y", "psi"].map(value), wind = model.wind ? ["wind_X_N", "wind_Y_N"].map(value) : null;
   if (!Number.isFinite(x + y + psi)) { word(); return; }
   const commands = boat.array("commands"), actuators = boat.array("actuators");
@@ -159,12 +159,12 @@ function scenarioText() {
 }
 
 $("recording").onclick = () => rows.length && save("csv", recordingText(),
-  name => `${name} is among your downloads; its vessel is ${hello.vessel}.`);
+  name => `${name} is among your downloads.`);
 $("scenario").onclick = () => {
   if (!rows.length || boat.time < model.step) { tell("Nothing has been driven yet."); return; }
   const text = scenarioText();
   if (new Blob([text]).size > model.most_bytes) tell("The commands are too many for a scenario file. The recording contains them.");
-  else save("toml", [text], name => `${name} is among your downloads; boatsim run ${name} repeats this run.`);
+  else save("toml", [text], name => `${name} is among your downloads. It repeats this run: boatsim run ${name}`);
 };
 $("again").onclick = () => { restart(); $("again").blur(); };
 addEventListener("beforeunload", e => { if (driven) e.preventDefault(); });

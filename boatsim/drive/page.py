@@ -1,4 +1,4 @@
-"""The driver's page: its markup, style and shared script, with a second script that moves the boat."""
+"""The driver's page: markup, style and a shared script, with a second one that moves the boat."""
 
 from dataclasses import dataclass
 from pathlib import Path
