@@ -5,7 +5,7 @@ const NOTICE = 6;  // [s] for which a message is shown
 const DIGITS = 12;  // of a number in the recording, as `boatsim run` writes it
 let model, boat, due, logDue, begun;  // the simulation, the times [s] of the next control and the next row, and the date
 let away = "", rows = [], goals = [];  // why nobody drives, rows of the recording, and commands of the sticks by time
-let driven = false;  // whether anything has been driven that was not saved
+let unsaved = false;  // whether anything was driven that has not been saved
 
 const inMiddle = () => Math.max(...sticks.map(Math.abs)) <= model.dead;
 const trouble = () => !hello ? "The page is being loaded …" : frame ? "" : "Sticks to the middle to begin.";
@@ -57,7 +57,7 @@ function commandsOf(deflections) {
 
 function control() {
   const goal = away ? null : commandsOf(sticks), t = boat.time;
-  driven = driven || !away && sticks.some(x => beyondDeadZone(x));
+  unsaved = unsaved || !away && sticks.some(x => beyondDeadZone(x));
   if (!goals.length || JSON.stringify(goal) !== JSON.stringify(goals[goals.length - 1][1])) goals.push([t, goal]);
   boat.sent = model.channels.map(({ name, neutral }) => goal && name in goal ? goal[name] : neutral);
   boat.array("commands").set(boat.sent.map((x, i) => Math.min(Math.max(x, model.channels[i].low), model.channels[i].high)));
@@ -73,11 +73,11 @@ function handOver(changed) {
 // The boat at its start; the run begins when the sticks are in the middle.
 function restart() {
   boat.reset();
-  [away, over, rows, goals, driven] = ["no driver has taken the sticks", "", [], [], false];
+  [away, over, rows, goals, unsaved] = ["no driver has taken the sticks", "", [], [], false];
   [frame, track, past] = [null, [], []];
   [due, logDue, begun] = [model.period, 0, new Date()];
   dirty = true;
-  tell("");
+  announce("");
 }
 
 // Advance the boat to the present. While the page is hidden, the simulation pauses.
@@ -129,11 +129,11 @@ document.addEventListener("visibilitychange", () => { if (document.hidden) away 
 
 // Files --------------------------------------------------------------------------------------------------------------
 
-let told = 0;  // timer of the notice
-function tell(words) {
-  clearTimeout(told);
+let noticeTimer = 0;  // timer of the notice
+function announce(words) {
+  clearTimeout(noticeTimer);
   notice = words;
-  if (words) told = setTimeout(() => tell(""), 1000 * NOTICE);
+  if (words) noticeTimer = setTimeout(() => announce(""), 1000 * NOTICE);
   word();
 }
 
@@ -143,8 +143,8 @@ function save(suffix, parts, words) {
   const name = `${hello.vessel}-drive-${when}.${suffix}`, address = URL.createObjectURL(new Blob(parts, { type: "text/plain" }));
   Object.assign(document.createElement("a"), { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 60000);
-  driven = false;
-  tell(words(name));
+  unsaved = false;
+  announce(words(name));
 }
 
 const recordingText = () => [`${model.columns.join()}\n`, ...rows.map(row => `${Array.from(row, x => Number(x.toPrecision(DIGITS))).join()}\n`)];
@@ -161,13 +161,13 @@ function scenarioText() {
 $("recording").onclick = () => rows.length && save("csv", recordingText(),
   name => `${name} is among your downloads.`);
 $("scenario").onclick = () => {
-  if (!rows.length || boat.time < model.step) { tell("Nothing has been driven yet."); return; }
+  if (!rows.length || boat.time < model.step) { announce("Nothing has been driven yet."); return; }
   const text = scenarioText();
-  if (new Blob([text]).size > model.most_bytes) tell("The commands are too many for a scenario file. The recording contains them.");
+  if (new Blob([text]).size > model.most_bytes) announce("The commands are too many for a scenario file. The recording contains them.");
   else save("toml", [text], name => `${name} is among your downloads. It repeats this run: boatsim run ${name}`);
 };
 $("again").onclick = () => { restart(); $("again").blur(); };
-addEventListener("beforeunload", e => { if (driven) e.preventDefault(); });
+addEventListener("beforeunload", e => { if (unsaved) e.preventDefault(); });
 
 // Begin --------------------------------------------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
 "use strict";
-// The driver's page: sticks, figures and the picture from above. What moves the boat is in a second script, which
-// receives the sticks and calls `begin` and `take`: `socket.js` (boatsim on this machine) or `offline.js` (the page itself).
+// The driver's page: sticks, figures and the picture from above. A second script, `socket.js` (the boat is simulated by
+// boatsim) or `offline.js` (it is simulated in the page), receives the sticks and calls `begin` and `take` with the boat.
 // It defines handOver(changed, now), trouble() and showTiming().
 const $ = id => document.getElementById(id), AXES = ["surge", "sway", "yaw"], DEG = 180 / Math.PI;
 const SPAN = 20;  // [s] of the past that is drawn
@@ -58,7 +58,7 @@ function draggable(pad, axes) {
 draggable($("left"), (x, y) => [[0, -y], [1, x]]);
 draggable($("right"), x => [[2, x]]);
 
-// What the page says -------------------------------------------------------------------------------------------------
+// Messages -----------------------------------------------------------------------------------------------------------
 function word() {
   const why = frame ? frame.away : "";
   $("word").textContent = notice || over || trouble() || (hello.ready && why ? `${why[0].toUpperCase()}${why.slice(1)}: commands are neutral. Sticks to the middle to take over.` : "");
