@@ -2,14 +2,19 @@
 
     python -m benchmarks.driving [--seconds 60]
     python -m benchmarks.driving --picture FILE.png   a picture of the page, with a fan on
+    python -m benchmarks.driving --offline [--picture FILE.png]   the same for the page without a server
 
 A headless Chromium drives `joystick_boat` with `l1_joystick` and a gamepad that is simulated in the
 page. The stick is pushed at random times; page and log use the clock of this machine. "log" is the
 first row with another goal, "commands" the first row with another command, which waits for the
 controller's period, and "picture" the time at which the page has the state with the new goal.
+
+With `--offline` the page simulates the boat itself. Its size, the time of a step and of a picture, and the
+difference to the engine in Python after two minutes are printed; the picture has the width of a phone.
 """
 
 import argparse
+import json
 import random
 import re
 import subprocess
@@ -22,8 +27,13 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from boatsim.drive.offline import write_offline_page
+from boatsim.drive.task import DriveTask
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording, read
+from boatsim.simulate import scenario
+from boatsim.simulate.run import run as simulate
+from boatsim.webassembly.compiler import find_compiler
 from tests.chrome import Page, chromium
 
 SHOWN = Path(__file__).parents[1] / "examples" / "swing.toml"
@@ -34,6 +44,35 @@ PUSH = """new Promise(done => {
     : setTimeout(look, 1);
   look();
 })"""  # returns when the stick was pushed and when the page saw the goal change [s since 1970]
+
+# Drives as fast as possible with other sticks every two seconds; returns recording, scenario and time per step [us]
+SIMULATE = """(() => {
+  const sequence = %s;
+  restart();
+  away = "";
+  sticks = sequence[0];
+  control();
+  keepRow();
+  const begin = performance.now();
+  for (const now of sequence) {
+    sticks = now;
+    for (let i = 0; i < 100; i++) step();
+  }
+  const taken = 1000 * (performance.now() - begin) / (100 * sequence.length);
+  return [recordingText().join(""), scenarioText(), taken];
+})()"""
+DRAW = """(() => {
+  const taken = [];
+  for (let i = 0; i < 200; i++) {
+    const begin = performance.now();
+    step();
+    show();
+    figures();
+    draw(frame);
+    taken.push(performance.now() - begin);
+  }
+  return taken.sort((a, b) => a - b);
+})()"""
 
 
 def push_stick(page: Page, seconds: float) -> Array:
@@ -107,14 +146,53 @@ def measure_latencies(folder: Path, seconds: float) -> None:
     )
 
 
+def measure_offline_page(folder: Path, picture: Path | None) -> None:
+    """Print size, speed and accuracy of the page without a server; save a picture if asked for."""
+    file = folder / "page.html"
+    size = write_offline_page(
+        DriveTask("joystick_boat", str(SHOWN), "open_loop", offline=True), file, find_compiler()
+    )
+    print(f"page.html: {size:,} bytes")
+    rng = random.Random(0)
+    sequence = [[rng.uniform(-1.0, 1.0), 0.0, rng.uniform(-1.0, 1.0)] for _ in range(60)]
+    with chromium() as opened:
+        page = opened(file.as_uri())
+        page.until("frame && frame.t > 0.5 && !frame.away")
+        recording, text, step = page.run(SIMULATE % json.dumps(sequence))
+        drawn = page.run(DRAW)
+        (folder / "page.csv").write_text(recording)
+        (folder / "scenario.toml").write_text(text)
+        of_page = read(folder / "page.csv")
+        of_engine = simulate(scenario.load(str(folder / "scenario.toml"))).recording
+        largest = 0.0
+        for name in ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps"):
+            largest = max(largest, float(np.abs(of_page[name] - of_engine[name]).max()))
+        print(f"a step of 20 ms with its row: {step:.0f} us")
+        print(f"a picture with its steps: median {np.median(drawn):.1f} ms")
+        print(
+            f"largest difference of motion to Python in {of_page.t[-1]:.0f} s: {largest:.1e} m, rad"
+        )
+        if picture:
+            page.run("$('again').click()")
+            page.until("frame && frame.t > 0.5 && !frame.away")
+            page.run("push(0.0, -0.8, 0.5, 0)")
+            page.until("frame.t > 7")
+            page.run("push(0.0, -0.6, -0.7, 0)")
+            page.until("frame.t > 12")
+            page.picture(picture, 390, 844)
+
+
 def main(given: Sequence[str] | None = None) -> None:
     """Measure, or save the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--offline", action="store_true")
     asked = parser.parse_args(given)
     with TemporaryDirectory() as folder:
-        if asked.picture:
+        if asked.offline:
+            measure_offline_page(Path(folder), asked.picture)
+        elif asked.picture:
             save_picture(Path(folder) / "out", asked.picture)
         else:
             measure_latencies(Path(folder) / "out", asked.seconds)

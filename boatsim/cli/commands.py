@@ -165,6 +165,12 @@ def _parse_folder(text: str | Path) -> Path:
     return Path(text)
 
 
+def _parse_file(text: str | Path) -> Path:
+    if not str(text) or "\0" in str(text):
+        raise typer.BadParameter(f"{str(text)!r} is not the name of a file")
+    return Path(text)
+
+
 def _parse_speed(text: str | float) -> float:
     if text == "max":
         return 0.0
@@ -456,15 +462,31 @@ def drive(
     serve: Annotated[
         bool, typer.Option("--serve", help="Also show the run in Rerun's web viewer.")
     ] = False,
+    offline: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            parser=_parse_file,
+            help="Write a page that simulates the boat without a server; needs boatsim[wasm].",
+        ),
+    ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
     """Drive a boat in real time from a page in the browser (gamepad, keys, mouse); record it."""
-    from boatsim.cli.driving import drive_vessel
+    from boatsim.cli.driving import drive_vessel, write_page
     from boatsim.cli.run_many import ViewerOptions
     from boatsim.drive.task import DriveTask
 
+    if offline:
+        given = {"--out": out, "--port": port, "--live": live, "--serve": serve}
+        if others := [name for name, value in given.items() if value]:
+            raise BadInput(f"{others[0]} does not apply with --offline, which only writes a page")
     with trusted_content(content, trust, [vessel, controller, scenario]):
+        if offline:
+            loads = _split_loads(load)
+            task = DriveTask(vessel, scenario, controller, loads, seconds, offline=True)
+            return write_page(task, offline, bool(open_))
         task = DriveTask(vessel, scenario, controller, _split_loads(load), seconds)
         viewer = None
         if live or serve:

@@ -10,6 +10,7 @@ from boatsim.cli.exits import Exit, print_error, print_note
 from boatsim.cli.metric_table import print_metrics
 from boatsim.cli.run_many import ViewerOptions, open_viewer, report_saturation
 from boatsim.drive.driver_input import DriverInput
+from boatsim.drive.offline import write_offline_page
 from boatsim.drive.server import Server
 from boatsim.drive.session import NothingDriven, Session, output_folder_name
 from boatsim.drive.task import FILE, DriveTask
@@ -18,6 +19,7 @@ from boatsim.simulate.run_files import run_into_folder
 from boatsim.view.run_observers import page_observer, rerun_observers
 from boatsim.view.run_page import run_command
 from boatsim.view.viewer import has_display
+from boatsim.webassembly.compiler import find_compiler
 
 
 def drive_vessel(
@@ -46,6 +48,24 @@ def drive_vessel(
         print_error(str(reason))
         return Exit.INTERRUPTED
     return _print_result(content, folder, session)
+
+
+def write_page(task: DriveTask, path: Path, browser: bool) -> int:
+    """Write a page in which a vessel is driven without a server.
+
+    Args:
+        task: Vessel and scenario, for a page that simulates them.
+        path: The HTML file.
+        browser: Whether to open the page in a browser.
+
+    Returns:
+        Exit code.
+    """
+    size = write_offline_page(task, path, find_compiler())
+    print(f"{path}: {size / 1000:.0f} kB; open it in a browser, it needs no server and no network")
+    if browser:
+        webbrowser.open(path.resolve().as_uri())
+    return Exit.MET
 
 
 def _drive(

@@ -7,18 +7,15 @@ import os
 import secrets
 import threading
 import time
-from base64 import b64encode
 from collections.abc import Mapping
 from concurrent.futures import Future
 from contextlib import suppress
-from hashlib import sha256
-from importlib.resources import files
-from re import DOTALL, search
 from typing import Any
 
 from boatsim.drive.connections import HANDSHAKE_TIME, WaitingConnections, server_logger
 from boatsim.drive.driver_input import DriverInput
 from boatsim.drive.messages import Movement, parse_message
+from boatsim.drive.page import SCRIPT, SOCKET, drive_page
 from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
@@ -58,7 +55,7 @@ class Server:
         self.hands, self.ended = hands, False
         self._sockets, self._wanted = sockets, port
         self._token = secrets.token_urlsafe(24)
-        self._page = files("boatsim.drive").joinpath("page.html").read_text("utf-8")
+        self._page = drive_page(SCRIPT, SOCKET)
         self._hello = self._frame = self._last = ""
         self._driver: Any = None
         self._left_at: float | None = None  # when the last page was closed, if none is open
@@ -185,17 +182,15 @@ class Server:
             return connection.respond(403, "this request is not from the page of this server\n")
         if rest or request.headers.get("Upgrade"):
             return connection.respond(404, "there is only the page\n")
-        return self._page_response(connection.respond(200, self._page), own)
+        return self._page_response(connection.respond(200, self._page.text()), own)
 
     def _page_response(self, answer: Any, own: str) -> Any:
         """The page with a policy that allows its own script, style and socket only."""
-        script, style = _policy_hash(self._page, "script"), _policy_hash(self._page, "style")
-        policy = f"default-src 'none'; script-src {script}; style-src {style}"
-        policy += f"; connect-src ws://{own}; img-src data:; base-uri 'none'; form-action 'none'"
+        policy = f"{self._page.policy()}; connect-src ws://{own}; frame-ancestors 'none'"
         del answer.headers["Content-Type"]
         for name, value in {
             "Content-Type": "text/html; charset=utf-8",
-            "Content-Security-Policy": f"{policy}; frame-ancestors 'none'",
+            "Content-Security-Policy": policy,
             "Cache-Control": "no-store",
             "Referrer-Policy": "no-referrer",
             "X-Content-Type-Options": "nosniff",
@@ -249,10 +244,3 @@ class Server:
             await self._news.wait()
         await socket.send(self._last)
         await socket.close()
-
-
-def _policy_hash(page: str, part: str) -> str:
-    """Hash by which the policy allows the script or style of the page."""
-    found = search(rf"<{part}>(.*?)</{part}>", page, DOTALL)
-    assert found, part
-    return f"'sha256-{b64encode(sha256(found[1].encode()).digest()).decode()}'"

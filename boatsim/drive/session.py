@@ -69,7 +69,7 @@ class Session:
         self._away: list[str] = []  # time and reason of each release of the sticks
         self._moved = -1.0
         self._driven = False  # whether the sticks have left the middle
-        self._painter = PageData(_scene_of(task.scenario), task.dials, task.scenario)
+        self._painter = PageData(scene_of(task.scenario), task.dials, task.scenario)
         self.replayable = True
         self.latencies: list[float] = []
 
@@ -195,8 +195,12 @@ class Session:
         self._goals.append((t, logged))
 
 
-def _scene_of(scenario: Scenario) -> Scene:
-    """Return the shapes of vessel and water, for which nothing has to be compiled."""
+def scene_of(scenario: Scenario) -> Scene:
+    """Return the shapes of vessel and water of a scenario, for which nothing has to be compiled.
+
+    Args:
+        scenario: The scenario.
+    """
     file, vessel = scenario.file, scenario.vessel
     tank = world.open_water(vessel)
     if file.tank and not file.is_compiled:

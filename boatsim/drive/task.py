@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from boatsim.drive.stick_mapping import StickMappings, stick_mappings_for
+from boatsim.errors import BadInput
 from boatsim.files import Value
 from boatsim.simulate.controllers import controller_table
 from boatsim.simulate.scenario import Scenario, from_table
@@ -13,6 +14,7 @@ from boatsim.simulate.vessel_scenario import (
     Goals,
     environment_table,
     repeating_scenario,
+    scenario_around_goals,
 )
 
 FILE = REPEATED
@@ -39,6 +41,7 @@ class DriveTask:
         controller: str | None = None,
         load: Sequence[str] = (),
         seconds: float = LONGEST,
+        offline: bool = False,
     ) -> None:
         """Load a task.
 
@@ -48,14 +51,19 @@ class DriveTask:
             controller: Controller; None for that of the scenario, or none.
             load: Load conditions.
             seconds: Largest duration [s].
+            offline: Whether the boat is simulated in the page, by the compiled engine.
 
         Raises:
-            BadInput: A name is wrong, or the sticks cannot steer the controller.
+            BadInput: A name is wrong, the sticks cannot steer the controller, or the page cannot
+                simulate the scenario.
         """
         table, place = environment_table(vessel, scenario, load, "drive")
         table["controller"] = _controller_table(table.get("controller"), controller)
         table["duration"] = seconds
         loaded = from_table({"step": SHORTEST, **table}, place)
+        if offline:
+            _check_offline(loaded)
+            table["engine"] = "compiled"
         self.vessel = loaded.vessel
         use = str(loaded.file.controller["use"])
         self.dials: StickMappings = stick_mappings_for(
@@ -91,6 +99,25 @@ class DriveTask:
             TOML text; None if it is larger than a scenario file may be.
         """
         return repeating_scenario(self._table, goals, duration)
+
+    def scenario_around_goals(self) -> tuple[str, str]:
+        """Return the text of that scenario file before and after its duration and goals."""
+        return scenario_around_goals(self._table)
+
+
+def _check_offline(scenario: Scenario) -> None:
+    """Raise BadInput if a scenario needs more than the vessel's program, which a page can run."""
+    file = scenario.file
+    if file.tank:
+        raise BadInput(
+            f"{scenario.name} has a [tank]; the offline page has open water only, because walls "
+            "need MuJoCo"
+        )
+    if file.controller["use"] != PASSED_ON:
+        raise BadInput(
+            f"controller {file.controller['use']} is written in Python, which the offline page "
+            f"cannot run; --controller {PASSED_ON} lets the sticks set the channels"
+        )
 
 
 def _controller_table(own: Value, controller: str | None) -> Mapping[str, Value]:

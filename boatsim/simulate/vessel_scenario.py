@@ -95,17 +95,27 @@ def repeating_scenario(table: Mapping[str, Value], goals: Goals, duration: float
     Returns:
         TOML text; None if it is larger than a scenario file may be.
     """
-    without = {key: value for key, value in table.items() if key != "goal"}
-    head = tomlkit.dumps({**without, "duration": duration})
+    top, tables = scenario_around_goals(table)
     rows = "".join(map("  {},\n".format, starmap(_goal_row, goals)))
-    # The goals are a top-level array, which must precede the first table.
-    top, _, tables = head.partition("\n[")
-    text = f"{top.rstrip()}\ngoal = [\n{rows}]\n"
-    if tables:
-        text += f"\n[{tables}"
+    text = f"{top}duration = {duration!r}\ngoal = [\n{rows}]\n{tables}"
     if len(text.encode()) > MAX_TOML_BYTES:
         return None
     return text
+
+
+def scenario_around_goals(table: Mapping[str, Value]) -> tuple[str, str]:
+    """Return the text of a scenario file before and after its duration and goals.
+
+    The goals are a top-level array, which must precede the first table.
+
+    Args:
+        table: Content of the scenario; its goals and duration are left out.
+    """
+    rest = {key: value for key, value in table.items() if key not in ("goal", "duration")}
+    top, _, tables = tomlkit.dumps(rest).partition("\n[")
+    if tables:
+        tables = f"\n[{tables}"
+    return f"{top.rstrip()}\n", tables
 
 
 def _goal_row(t: float, goal: Mapping[str, float] | None) -> str:

@@ -36,18 +36,22 @@ def render_template(template: Path, further_script: str = "", **values: object) 
 
 def _policy(script: str, further_script: str) -> str:
     """Return a content security policy that allows these scripts only and no connections."""
-    sources = _source(script)
+    sources = content_source(script)
     if further_script:
-        sources = f"{sources} {_source(further_script)} 'wasm-unsafe-eval'"
+        sources = f"{sources} {content_source(further_script)} 'wasm-unsafe-eval'"
     return (
         f"default-src 'none'; script-src {sources}; style-src 'unsafe-inline'; "
         "base-uri 'none'; form-action 'none'"
     )
 
 
-def _source(script: str) -> str:
-    """Return the source expression of a content security policy for one script."""
-    digest = b64encode(sha256(script.encode()).digest()).decode()
+def content_source(content: str) -> str:
+    """Return the source expression of a content security policy for a script or a style.
+
+    Args:
+        content: Its text.
+    """
+    digest = b64encode(sha256(content.encode()).digest()).decode()
     return f"'sha256-{digest}'"
 
 

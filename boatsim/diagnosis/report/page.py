@@ -16,7 +16,6 @@ from boatsim.diagnosis.report.sections import report_sections
 from boatsim.diagnosis.report.sentences import held_out_improvement_sentence, mean_force_paragraph
 from boatsim.diagnosis.report.what_if import (
     LAYOUT_BYTES,
-    MOST_BYTES,
     SCRIPT,
     TOO_LARGE,
     WhatIf,
@@ -27,6 +26,7 @@ from boatsim.files import replace_file
 from boatsim.view.formatting import capitalize, join_words, name_in_words
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Section, escape_markup, markdown_lines
+from boatsim.webassembly.packing import LOADER, MOST_BYTES
 
 TEMPLATE = Path(__file__).parent / "templates" / "report.html.j2"
 VERDICTS = {  # verdict of the answer -> words at the top of the report
@@ -74,7 +74,7 @@ def report_html(
         findings: Findings of a diagnosis.
         sections: Sections of the report that have content.
         what_if: Content of the section that repeats free runs; None for none. As many free runs of
-            it are shown as keep the page below `what_if.MOST_BYTES`.
+            it are shown as keep the page below `MOST_BYTES`.
     """
     script, values, note = "", None, ""
     if what_if is not None:
@@ -83,7 +83,7 @@ def report_html(
         if shown is None:
             note = TOO_LARGE
         else:
-            script = SCRIPT.read_text(encoding="utf-8")
+            script = "".join(part.read_text(encoding="utf-8") for part in (LOADER, SCRIPT))
             values = template_values(shown, sum(len(one.starts) for one in what_if.recordings))
     return render_template(
         TEMPLATE,

@@ -1,8 +1,6 @@
 """The section of a report that repeats free runs in the browser while sliders move."""
 
 import json
-import zlib
-from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,13 +12,13 @@ from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.schema import Family
 from boatsim.physics.base import Array
 from boatsim.view.formatting import IN_DEGREES, STEPS, convenient_unit, format_number, format_unit
+from boatsim.webassembly.packing import PackedNumbers
 
 SCRIPT = Path(__file__).parent / "templates" / "what_if.js"
 STYLE = Path(__file__).parent / "templates" / "what_if.css"
 TOO_LARGE = (
     "This report has no sliders, because with a single free run it would be larger than 1 MB."
 )
-MOST_BYTES = 1_000_000  # of a report with this section
 LAYOUT_BYTES = 40_000  # of the section without its content: script, template, escaped characters
 SIGNAL_WORDS = {  # column -> what its plot shows, and its SI unit
     "x_m": ("position x", "m"),
@@ -191,7 +189,7 @@ def template_values(what_if: WhatIf, runs: int) -> dict[str, object]:
         what_if: Program, effects and recordings.
         runs: Number of free runs over all held-out recordings, of which it may have fewer.
     """
-    numbers = _PackedNumbers()
+    numbers = PackedNumbers()
     content = _content(what_if, numbers)
     families = [FAMILIES[family][0] for family in what_if.families]
     others = [e for e in what_if.effects if not e.found and not e.coefficients]
@@ -267,36 +265,12 @@ def _recording_size(what_if: WhatIf, recording: ReplayedRecording) -> int:
 
 
 def _content_size(what_if: WhatIf) -> int:
-    numbers = _PackedNumbers()
+    numbers = PackedNumbers()
     content = _content(what_if, numbers)
     return len(numbers.text) + len(json.dumps(content))
 
 
-class _PackedNumbers:
-    """Arrays of floats and the program, one after another, compressed as text."""
-
-    def __init__(self) -> None:
-        self._bytes = bytearray()
-
-    def place(self, array: Array) -> tuple[int, int]:
-        """Add an array; return its place [bytes] and its number of entries."""
-        at = len(self._bytes)
-        self._bytes += np.ascontiguousarray(array, dtype="<f8").tobytes()
-        return at, array.size
-
-    def place_program(self, program: bytes) -> tuple[int, int]:
-        """Add the program after all arrays, which start at multiples of 8 bytes."""
-        at = len(self._bytes)
-        self._bytes += program
-        return at, len(program)
-
-    @property
-    def text(self) -> str:
-        """All of it, compressed by zlib, in base 64."""
-        return b64encode(zlib.compress(bytes(self._bytes), 9)).decode()
-
-
-def _content(what_if: WhatIf, numbers: _PackedNumbers) -> dict[str, Any]:
+def _content(what_if: WhatIf, numbers: PackedNumbers) -> dict[str, Any]:
     """Return what the script reads as JSON; arrays are places in the packed numbers."""
     recordings = []
     for one in what_if.recordings:

@@ -20,9 +20,10 @@ from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.output.what_if import collect_what_if
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.report.what_if import MOST_BYTES, WhatIf, template_values, within_size
+from boatsim.diagnosis.report.what_if import WhatIf, template_values, within_size
 from boatsim.physics.kernel.records import VesselNumbers
 from boatsim.webassembly.compiler import NoWasmCompiler, find_compiler
+from boatsim.webassembly.packing import MOST_BYTES
 
 PAGE = "document.querySelector('#what-if')"
 BLOCKED = """

@@ -1,18 +1,10 @@
-"use strict";
-// Repeats free runs in the browser while sliders move. The vessel's program is WebAssembly; nothing is fetched.
+// Repeats free runs in the browser while sliders move. `loader.js`, which comes before this script, loads the program.
 (() => {
 const STEPS = 1000; // positions of a slider
-const MATH = ["acos", "asin", "atan", "atan2", "cos", "cosh", "exp", "hypot", "log", "pow", "sin", "sinh", "tan", "tanh"];
 const root = document.getElementById("what-if");
 const $ = selector => root.querySelector(selector);
 
 // The content of the page --------------------------------------------------------------------------------------------
-
-async function unpacked(text) {
-  const packed = Uint8Array.from(atob(text.trim()), character => character.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Response(stream).arrayBuffer();
-}
 
 // A recording in the memory of its own instance of the program
 class Simulation {
@@ -20,20 +12,16 @@ class Simulation {
     Object.assign(this, { model, recording, numbers, exports, size: 2 * model.nq });
     const { times, command_times, commands, values, states, starts } = recording;
     this.rows = times[1];
+    const put = array => putNumbers(exports, array);
     this.at = {
-      times: this.put(numbers(times)), commandTimes: this.put(numbers(command_times)),
-      commands: this.put(numbers(commands)), states: this.put(numbers(states)),
-      values: this.put(numbers(values)), switches: this.put(new Float64Array(model.switches)),
+      times: put(numbers(times)), commandTimes: put(numbers(command_times)),
+      commands: put(numbers(commands)), states: put(numbers(states)),
+      values: put(numbers(values)), switches: put(new Float64Array(model.switches)),
       starts: exports.allocate(8 * starts.length), ends: exports.allocate(8 * starts.length),
       out: exports.allocate(8 * starts.length * this.rows * this.size),
     };
     this.times = numbers(times);
     this.measured = Object.fromEntries(Object.entries(recording.measured).map(([name, place]) => [name, numbers(place)]));
-  }
-  put(array) {
-    const at = this.exports.allocate(array.byteLength);
-    new Float64Array(this.exports.memory.buffer, at, array.length).set(array);
-    return at;
   }
   // Simulate with parameter values and switches, in runs of the usual length or in one run; returns a list of runs.
   run(values, switches, whole) {
@@ -332,14 +320,11 @@ function build(model, simulations) {
 
 async function start() {
   const model = JSON.parse($("script[type='application/json']").textContent);
-  const buffer = await unpacked($("script[type='text/plain']").textContent);
-  const program = await WebAssembly.compile(new Uint8Array(buffer, ...model.program));
-  const imports = { math: Object.fromEntries(MATH.map(name => [name, Math[name]])) };
-  imports.math.fmod = (x, y) => x % y;
+  const buffer = await unpackNumbers($("script[type='text/plain']").textContent);
+  const program = await compileProgram(buffer, model.program);
   const numbers = ([offset, count]) => new Float64Array(buffer, offset, count);
   const simulations = await Promise.all(model.recordings.map(async recording => {
-    const instance = await WebAssembly.instantiate(program, imports);
-    return new Simulation(model, recording, numbers, instance.exports);
+    return new Simulation(model, recording, numbers, await startProgram(program));
   }));
   build(model, simulations);
 }
