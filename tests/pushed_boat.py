@@ -40,12 +40,18 @@ def sail(
     missing: Missing,
     facts: dict[str, Any] | None = None,
     late: Late | None = None,
+    straight: bool = False,
 ) -> tuple[Recording, Array]:
-    """A recording of the trial boat under a further force, and that force at every row."""
+    """A recording of the trial boat under a further force, and that force at every row.
+
+    Straight: both motors have one thrust ahead, and nothing steers.
+    """
     rng = np.random.default_rng(seed)
     levels = np.column_stack(
         [rng.uniform(-0.9, 0.9, (ROWS // 8, 2)), rng.uniform(-0.6, 0.6, (ROWS // 8, 2))]
     )
+    if straight:
+        levels = np.column_stack([np.abs(levels[:, [0, 0]]), np.zeros((ROWS // 8, 2))])
     commands = np.repeat(levels, 8, axis=0)
 
     def slope(y: Array, t: float, command: Array) -> list[float]:

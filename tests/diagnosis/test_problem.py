@@ -12,6 +12,7 @@ from boatsim.physics import vessel
 from boatsim.physics.effects.damping import QuadraticDamping
 from boatsim.physics.effects.rate_limit import SteeringRateLimit
 from boatsim.physics.effects.wave_forcing import WaveForcing
+from boatsim.physics.effects.wind import Wind
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 
@@ -39,6 +40,16 @@ def test_frequencies_and_rates_scale_with_the_root_of_the_length(name: str) -> N
     assert free["frequency"].mean == pytest.approx(3.0 * slower)
     assert free["frequency"].sd == pytest.approx(1.5 * slower)
     assert free["damping"].mean == pytest.approx(0.08)  # a ratio has the same value on any hull
+
+
+@pytest.mark.parametrize("name", ["joystick_boat", "catamaran", "mariner"])
+def test_the_expected_force_of_a_wind_is_that_of_one_wind_speed_on_every_hull(name: str) -> None:
+    """A breeze of 5 m/s on the side, of 0.3 L B; drag coefficient 0.9, air of 1.2 kg/m^3."""
+    boat = vessel.load_vessel(name)
+    free = problem_of(boat, Wind(name="wind")).free_parameters(("wind",))
+    [force] = [f for f in free if (f.effect, f.name) == ("wind", "force")]
+    breeze = 0.5 * 1.2 * 0.9 * 5.0**2 * 0.3 * boat.length * boat.beam
+    assert force.sd == pytest.approx(breeze, rel=0.03)
 
 
 def test_a_problem_with_another_prior_leaves_the_first_one_and_its_copies_as_they_are() -> None:

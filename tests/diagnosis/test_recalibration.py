@@ -12,7 +12,12 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
 from boatsim.diagnosis.output.patched_vessel import write_patched_vessel
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
-from boatsim.diagnosis.recalibration import decide_recalibration, undetermined_coefficients
+from boatsim.diagnosis.recalibration import (
+    decide_recalibration,
+    fix_undetermined_coefficients,
+    undetermined_by_simulations,
+    undetermined_coefficients,
+)
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -25,6 +30,11 @@ DRAG = 0.4  # share by which a boat has more drag than its file
 
 def draggy(t: float, y: Array, command: Array) -> Array:
     return np.asarray(-DRAG * DAMPING * y[3:6])
+
+
+def gusty(t: float, y: Array, command: Array) -> Array:
+    """A force on the beam that no command causes."""
+    return np.array([0.0, 0.4 * np.sin(1.3 * t) + 0.3 * np.sin(2.9 * t + 1.0), 0.0])
 
 
 def slippery(t: float, y: Array, command: Array) -> Array:
@@ -88,6 +98,32 @@ def test_coefficients_are_adopted_only_if_held_out_data_agree(
         patched = tmp_path / "patched.toml"
         write_patched_vessel(problem, BOAT, found.fit, patched)
         assert load_vessel(str(patched)).effects == BOAT.effects
+
+
+def test_a_boat_that_never_turns_keeps_its_damping_in_sway_whatever_pushes_it() -> None:
+    problem = replace(
+        problem_of(sail("straight", 3, gusty, straight=True)[0]),
+        uncertainty={"damping": 1.0, "thrust": 0.1},
+    )
+    held_out = [map_recording(sail("held out", 4, gusty, straight=True)[0], PROGRAM)]
+    refitted = fit_baseline(problem)[1]
+    names = [f"{f.effect}.{f.name}" for f in refitted.free]
+    surge, sway = names.index("linear_damping.surge"), names.index("linear_damping.sway")
+    sd = np.sqrt(np.diag(refitted.covariance)) / [f.sd for f in refitted.free]
+    assert sd[sway] < DEFAULT.fit.undetermined_sd  # the filter believes that it knows
+    assert abs(refitted.theta[sway] - 1.0) > 0.2  # and is wrong
+    found = fix_undetermined_coefficients(problem, refitted, held_out)
+    assert found.theta[sway] == 1.0
+    assert found.theta[surge] == pytest.approx(1.0, abs=0.15)
+    assert sway in undetermined_by_simulations(problem, refitted)
+    assert surge not in undetermined_by_simulations(problem, refitted)
+
+
+def test_a_boat_that_turns_keeps_none_of_its_damping() -> None:
+    problem = problem_of(sail("turns", 1, draggy)[0])
+    refitted = fit_baseline(problem)[1]
+    kept = [refitted.free[i].effect for i in undetermined_by_simulations(problem, refitted)]
+    assert "linear_damping" not in kept
 
 
 def test_of_two_coefficients_whose_ratio_alone_is_determined_one_is_kept() -> None:
