@@ -19,7 +19,7 @@ def test_missing_capytaine_is_answered_by_the_command_that_installs_it(
     monkeypatch.setattr(computation, "find_spec", nothing)
     hull = computation.HullMesh(tmp_path / "hull.stl", 0.1)
     with pytest.raises(BadInput, match=r'pip install "boatsim\[bem\]"'):
-        computation.mesh_length(hull)
+        computation.mesh_size(hull)
 
 
 @pytest.mark.slow

@@ -15,12 +15,13 @@ from scipy.interpolate import CubicSpline
 
 from boatsim.hydrodynamics.axes import with_memory
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
+from boatsim.hydrodynamics.response import linear_stiffness
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.open_water import OpenWater
-from validation.waves.boats import linear_stiffness, write_vessel
+from validation.waves.boats import write_vessel
 from validation.waves.hulls import Section, write_section
 
 RUNS = Path(__file__).parents[3] / "shared" / "recordings" / "section_beam_waves" / "runs_clean"
