@@ -36,9 +36,11 @@ class Ballast:
             found: Coefficients of the hull.
         """
         roll, pitch, yaw = self.gyradii
+        side = "above" if self.depth < 0.0 else "below"
         text = (
-            f"freely floating, {found.volume * found.density:.6g} kg, mass centre {self.depth:.4g} "
-            f"m below the waterline, gyradii {roll:.4g}, {pitch:.4g}, {yaw:.4g} m"
+            f"freely floating, {found.volume * found.density:.6g} kg, mass centre "
+            f"{abs(self.depth):.4g} m {side} the waterline, gyradii {roll:.4g}, {pitch:.4g}, "
+            f"{yaw:.4g} m"
         )
         if self.roll_damping > 0.0:
             text += f", further roll damping {self.roll_damping:.4g} of the critical"

@@ -54,6 +54,29 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
     return np.concatenate(found)
 
 
+def revolved(profile: Array, meridians: int) -> Array:
+    """Return the triangles (N, 3, 3) of a surface of revolution about the vertical axis.
+
+    Args:
+        profile: Radius and height of the circles (M, 2) [m], from the waterline to the keel.
+        meridians: Number of panels around it.
+    """
+    around = np.linspace(0.0, 2.0 * np.pi, meridians + 1)
+    radius, height = profile.T
+    points = np.stack(
+        [
+            np.outer(radius, np.cos(around)),
+            np.outer(radius, np.sin(around)),
+            np.outer(height, np.ones(meridians + 1)),
+        ],
+        axis=-1,
+    )
+    a, b = points[:-1, :-1], points[:-1, 1:]
+    c, d = points[1:, 1:], points[1:, :-1]
+    first, second = np.stack([a, d, c], axis=2), np.stack([a, c, b], axis=2)
+    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+
+
 def write_stl(path: Path, triangles: Array) -> None:
     """Write triangles to an STL file as text; those without area are left out.
 

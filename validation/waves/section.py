@@ -9,6 +9,7 @@ memory, buoyancy, weight and mass. No number is fitted, and there is no viscous 
 import csv
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -81,8 +82,15 @@ heave = 1.0
 """
 
 
-def section_coefficients(folder: Path) -> Coefficients:
-    """Return the coefficients of the section, computed by Capytaine.
+class LongBody(NamedTuple):
+    """One of the two long bodies with the section."""
+
+    rows: list[dict[str, Any]]  # results of Capytaine
+    coefficients: Coefficients
+
+
+def long_bodies(folder: Path) -> tuple[LongBody, LongBody]:
+    """Return the shorter and the longer body in beam waves, computed by Capytaine.
 
     Args:
         folder: Working folder.
@@ -95,8 +103,17 @@ def section_coefficients(folder: Path) -> Coefficients:
         hull = HullMesh(path, DRAUGHT, density=DENSITY, depth=WATER)
         heading = [0.5 * np.pi]
         rows = run_capytaine(hull, FREQUENCIES, heading, lambda stage, share: None)
-        bodies.append(coefficients_of_rows(rows, hull, heading))
-    short, long = bodies
+        bodies.append(LongBody(rows, coefficients_of_rows(rows, hull, heading)))
+    return bodies[0], bodies[1]
+
+
+def section_coefficients(folder: Path) -> Coefficients:
+    """Return the coefficients of the section, without memory.
+
+    Args:
+        folder: Working folder.
+    """
+    short, long = (body.coefficients for body in long_bodies(folder))
     share = LENGTH / (LONG - SHORT)
     values = {}
     for name in (
@@ -114,7 +131,7 @@ def section_coefficients(folder: Path) -> Coefficients:
         for axis in ("surge", "pitch", "yaw"):
             values[name][..., AXES.index(axis), :] = 0.0
             values[name][..., :, AXES.index(axis)] = 0.0
-    return with_memory(replace(long, source=f"{long.source}, of a section", **values))
+    return replace(long, source=f"{long.source}, of a section", **values)
 
 
 def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
@@ -123,7 +140,7 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
     Args:
         folder: Working folder.
     """
-    coefficients = section_coefficients(folder)
+    coefficients = with_memory(section_coefficients(folder))
     write_coefficients(folder / "coefficients", coefficients)
     found = read_coefficients(folder / "coefficients")
     results = []
