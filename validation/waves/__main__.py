@@ -72,9 +72,11 @@ def print_drift(folder: Path) -> None:
             f"  {error:5.1f} %  {100.0 * cylinder.energy:6.1f} %"
         )
     results = drift.section_drift(folder)
-    print("\nMean drift of the ship section in beam waves, per length and square of the amplitude,")
-    print("by the far-field method, against H. Maruo, J. Ship Research 4(3), 1960, with the")
-    print("reflection by the pressure on the hull")
+    print("\nMean drift of the ship section in deep water and beam waves, per length and square of")
+    print(
+        "the amplitude [N/m^3], by the far-field method, against H. Maruo, J. Ship Research 4(3),"
+    )
+    print("1960, with the reflection by the pressure on the hull")
     print("period s  section  reflection   far field       Maruo   error")
     for row in results:
         words = "free" if row.moves else "held"

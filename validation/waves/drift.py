@@ -12,14 +12,23 @@ from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
-from boatsim.physics.waves.dispersion import wave_number
 from validation.waves import section
-from validation.waves.hulls import revolved, write_stl
+from validation.waves.hulls import Section, revolved, write_stl
 
 SWAY, HEAVE, ROLL = (AXES.index(axis) for axis in ("sway", "heave", "roll"))
 NUMBERS = (1.0, 1.5, 2.0)  # k a of the cylinder
 RADIUS, DRAUGHT = 1.0, 3.0  # [m] so deep that the pressure at its bottom is less than 5 %
 MERIDIANS, DOWN, INWARD = 32, 12, 4  # panels around the cylinder, on its side and bottom
+# The section in deep water, whose waves have 0.7 to 1.6 s, with finer panels than in the flume: the
+# drift is as exact as the square of the waves
+BODIES = section.LongBodies(
+    short=2.0,
+    long=4.0,
+    panel=0.125,
+    section=Section(section.BEAM, section.DRAUGHT, section.BILGE, panels=(6, 3)),
+    depth=0.0,
+    frequencies=[4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+)
 SERIES = 30  # terms of the series of the cylinder
 
 
@@ -51,8 +60,8 @@ def section_drift(folder: Path) -> list[SectionDrift]:
     """Return the mean drift of the ship section in beam waves, held and freely floating.
 
     The drift per length is the difference of those of two long bodies, in which the ends cancel.
-    Maruo's formula takes the reflection from the pressure on the hull, so that the two have nothing
-    but the potential on the hull in common.
+    The reflection in Maruo's formula follows from the pressure on the hull; the two have only the
+    potential on the hull in common.
 
     Args:
         folder: Working folder.
@@ -60,8 +69,8 @@ def section_drift(folder: Path) -> list[SectionDrift]:
     Raises:
         BadInput: Capytaine is not installed.
     """
-    short, long = section.long_bodies(folder)
-    found = section.section_coefficients(folder)
+    short, long = section.computed_bodies(folder, BODIES)
+    found = section.section_coefficients(folder, BODIES)
     motion, held, free = section_reflection(found)
     results = []
     for moves, reflection in ((False, held), (True, free)):
@@ -70,9 +79,9 @@ def section_drift(folder: Path) -> list[SectionDrift]:
         for body in (short, long):
             drift = mean_drift(body.rows, body.coefficients, response, np.zeros((6, 6)))
             sides.append(drift[:, 0, 1])
-        per_length = (sides[1] - sides[0]) / (section.LONG - section.SHORT)
+        per_length = (sides[1] - sides[0]) / (BODIES.long - BODIES.short)
         for i, w in enumerate(found.frequency):
-            exact = maruo(float(w), float(reflection[i]), found)
+            exact = maruo(float(reflection[i]), found.density)
             results.append(
                 SectionDrift(float(w), moves, float(reflection[i]), float(per_length[i]), exact)
             )
@@ -112,19 +121,16 @@ def section_reflection(found: Coefficients) -> tuple[Array, Array, Array]:
     return motion, np.array(held), np.array(free)
 
 
-def maruo(frequency: float, reflection: float, found: Coefficients) -> float:
-    """Return the mean drift of a section in waves of unit amplitude by Maruo's formula [N/m^3].
+def maruo(reflection: float, density: float) -> float:
+    """Return the mean drift of a section in deep water by Maruo's formula [N/m per m^2].
 
-    It is rho g / 2 R^2 (1 + 2 k h / sinh 2 k h), in water of the depth h (M. S. Longuet-Higgins,
-    Proc. R. Soc. A 352, 1977).
+    It is rho g / 2 R^2 in waves of unit amplitude.
 
     Args:
-        frequency: Angular frequency [rad/s].
-        reflection: Amplitude of the reflected wave over that of the incident one.
-        found: Coefficients of the section, with the water.
+        reflection: Amplitude of the reflected wave over that of the incident one, R.
+        density: Density of the water [kg/m^3].
     """
-    twice = 2.0 * float(wave_number(frequency, found.depth)) * found.depth
-    return 0.5 * found.density * GRAVITY * reflection**2 * (1.0 + twice / float(np.sinh(twice)))
+    return 0.5 * density * GRAVITY * reflection**2
 
 
 def cylinder_force(number: float) -> float:

@@ -146,26 +146,31 @@ class Section:
         beam: Beam [m].
         draught: Draught [m].
         bilge: Radius of the bilges [m].
+        panels: Numbers of panels on a side and on half of the bottom.
     """
 
-    def __init__(self, beam: float, draught: float, bilge: float) -> None:
+    def __init__(
+        self, beam: float, draught: float, bilge: float, panels: tuple[int, int] = (2, 2)
+    ) -> None:
         """Set the dimensions.
 
         Args:
             beam: Beam [m].
             draught: Draught [m].
             bilge: Radius of the bilges [m].
+            panels: Numbers of panels on a side and on half of the bottom.
         """
-        self.beam, self.draught, self.bilge = beam, draught, bilge
+        self.beam, self.draught, self.bilge, self.panels = beam, draught, bilge, panels
 
     def outline(self) -> list[tuple[float, float]]:
         """Return points (y to port, z up) from the port side above water to starboard [m]."""
         half, depth, r = 0.5 * self.beam, self.draught, self.bilge
         freeboard = 0.25 * depth
-        right = [(half, freeboard), (half, 0.0), (half, -0.5 * (depth - r)), (half, r - depth)]
+        side, bottom = self.panels
+        right = [(half, freeboard)]
+        right += [(half, float(z)) for z in np.linspace(0.0, r - depth, side + 1)]
         for angle in np.linspace(0.0, 0.5 * np.pi, 4)[1:]:
             right.append((half - r + r * np.cos(angle), r - depth - r * np.sin(angle)))
-        right.append((0.5 * (half - r), -depth))
-        right.append((0.0, -depth))
+        right += [(float(y), -depth) for y in np.linspace(half - r, 0.0, bottom + 1)[1:]]
         left = [(-y, z) for y, z in right[-2::-1]]
         return [(float(y), float(z)) for y, z in right + left]
