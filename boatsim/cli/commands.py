@@ -842,7 +842,7 @@ def hydrodynamics(
     roll_damping: Annotated[
         float,
         typer.Option(
-            min=0.0, max=1.0, metavar="X", help="Of roll besides that of waves; 1: critical."
+            min=0.0, max=1.0, metavar="X", help="Of roll, added to that of waves; 1: critical."
         ),
     ] = 0.0,
     compare: Annotated[

@@ -40,7 +40,7 @@ class HydrodynamicsOptions:
         centre_depth: Depth of the mass centre below the waterline [m], negative above it.
         roll_gyradius: Radius of gyration in roll [m]; None for 0.35 of the beam.
         pitch_gyradius: Radius of gyration in pitch and yaw [m]; None for a quarter of the length.
-        roll_damping: Damping of roll besides that of the waves, as a share of the critical one.
+        roll_damping: Damping of roll added to that of the waves, as a share of the critical one.
         compare: Whether the mesh is compared with one of half the panel size.
         out: Folder to write; None for `hydrodynamics` next to the hull.
     """

@@ -121,7 +121,7 @@ def mean_drift(
         found: Coefficients of the hull from these results.
         response: Motion (N, H, 6) in waves of unit amplitude, in SNAME axes and with the time
             factor exp(i w t); zero for a hull that is held.
-        extra: Damping besides that of the radiated waves (6, 6).
+        extra: Damping in addition to that of the radiated waves (6, 6).
 
     Returns:
         Force in surge and sway and moment in yaw in SNAME axes (N, H, 3) [N/m^2, N/m].

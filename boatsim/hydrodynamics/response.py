@@ -21,8 +21,8 @@ class Ballast:
     Attributes:
         depth: Depth of the mass centre below the waterline, negative above it [m].
         gyradii: Radii of gyration in roll, pitch and yaw about the mass centre [m].
-        roll_damping: Damping of roll besides that of the radiated waves, as a share of the critical
-            damping [-].
+        roll_damping: Damping of roll in addition to that of the radiated waves, as a share of the
+            critical damping [-].
     """
 
     depth: float
@@ -107,7 +107,7 @@ def floating_response(found: Coefficients, ballast: Ballast) -> tuple[Array, Arr
 
     Returns:
         Complex amplitudes (N, H, 6) of the time dependence exp(i w t) [m/m, rad/m], and the damping
-        besides that of the radiated waves (6, 6).
+        in addition to that of the radiated waves (6, 6).
 
     Raises:
         BadInput: The hull would capsize.

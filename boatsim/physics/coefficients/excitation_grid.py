@@ -56,7 +56,7 @@ def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
     pairs = np.stack([grid.real, grid.imag], axis=-1)
     drift = np.zeros((FREQUENCIES, HEADINGS, DRIFTS))
     if found.drift is not None:
-        # the drift can have a narrow peak at a resonance, beside which a spline would oscillate
+        # the drift can have a narrow peak at a resonance, next to which a spline would oscillate
         over_frequency = PchipInterpolator(found.frequency, found.drift)(frequency)
         drift = _over_headings(heading, over_frequency, DRIFT_MIRROR)
     step = frequency[1] - frequency[0]

@@ -112,7 +112,9 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
     if found.memory is not None:
         _write_table(folder / MEMORY, MEMORY_COLUMNS, _memory_rows(found.memory))
-    if found.drift is not None:
+    if found.drift is None:
+        (folder / DRIFT).unlink(missing_ok=True)  # of earlier coefficients
+    else:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
 
 

@@ -110,6 +110,12 @@ def test_incomplete_drift_of_wamit_is_refused(tmp_path: Path) -> None:
         read_wamit(path, scale)
 
 
+def test_coefficients_without_drift_leave_none_of_earlier_ones(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", own())
+    write_coefficients(tmp_path / "copy", replace(own(), drift=None))
+    assert read_coefficients(tmp_path / "copy").drift is None
+
+
 def test_drift_of_other_waves_than_the_excitation_is_refused(tmp_path: Path) -> None:
     write_coefficients(tmp_path / "copy", own())
     path = tmp_path / "copy" / "drift.csv"
