@@ -847,6 +847,26 @@ def hydrodynamics(
         float | None,
         typer.Option(metavar="W", help="Frequency [rad/s] [default: waves of half the length]."),
     ] = None,
+    centre_depth: Annotated[
+        float,
+        typer.Option(metavar="M", help="Depth of the mass centre below the waterline [m]."),
+    ] = 0.0,
+    roll_gyradius: Annotated[
+        float | None,
+        typer.Option(min=1e-3, metavar="M", help="Of roll [m] [default: 0.35 of the beam]."),
+    ] = None,
+    pitch_gyradius: Annotated[
+        float | None,
+        typer.Option(
+            min=1e-3, metavar="M", help="Of pitch and yaw [m] [default: 0.25 of the length]."
+        ),
+    ] = None,
+    roll_damping: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=1.0, metavar="X", help="Of roll, added to that of waves; 1: critical."
+        ),
+    ] = 0.0,
     compare: Annotated[
         bool,
         typer.Option(
@@ -864,7 +884,8 @@ def hydrodynamics(
 ) -> int:
     """Compute hydrodynamic coefficients of a hull by Capytaine, or convert those of WAMIT or Nemoh.
 
-    The effects radiation_memory and panel_wave_loads of a vessel read the folder. Needs
+    The effects radiation_memory and panel_wave_loads of a vessel read the folder. The mean drift is
+    that of the freely floating hull, which depends on its mass centre and its gyradii. Needs
     boatsim[bem] for a mesh.
     """
     from boatsim.cli.hydrodynamics import HydrodynamicsOptions, write_hydrodynamics
@@ -880,6 +901,10 @@ def hydrodynamics(
         headings=headings,
         lowest=lowest,
         highest=highest,
+        centre_depth=centre_depth,
+        roll_gyradius=roll_gyradius,
+        pitch_gyradius=pitch_gyradius,
+        roll_damping=roll_damping,
         compare=compare,
         out=out,
     )

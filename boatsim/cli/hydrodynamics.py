@@ -11,10 +11,11 @@ from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.hydrodynamics import computation
 from boatsim.hydrodynamics.axes import ASYMMETRY, asymmetry, with_memory
 from boatsim.hydrodynamics.nemoh import RADIATION, read_nemoh
+from boatsim.hydrodynamics.response import Ballast
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit
 from boatsim.physics.coefficients.files import write_coefficients
 from boatsim.physics.coefficients.table import Coefficients
-from boatsim.physics.signals import AXES
+from boatsim.physics.signals import AXES, Array
 
 FOLDER = "hydrodynamics"  # default name of the folder of coefficients
 STUDIED = 3  # frequencies of the comparison of meshes
@@ -36,6 +37,10 @@ class HydrodynamicsOptions:
         headings: Number of headings from 0 to pi.
         lowest: Lowest frequency [rad/s]; None for waves of 20 lengths.
         highest: Highest frequency [rad/s]; None for waves of half the length.
+        centre_depth: Depth of the mass centre below the waterline [m], negative above it.
+        roll_gyradius: Radius of gyration in roll [m]; None for 0.35 of the beam.
+        pitch_gyradius: Radius of gyration in pitch and yaw [m]; None for a quarter of the length.
+        roll_damping: Damping of roll added to that of the waves, as a share of the critical one.
         compare: Whether the mesh is compared with one of half the panel size.
         out: Folder to write; None for `hydrodynamics` next to the hull.
     """
@@ -50,6 +55,10 @@ class HydrodynamicsOptions:
     headings: int
     lowest: float | None
     highest: float | None
+    centre_depth: float
+    roll_gyradius: float | None
+    pitch_gyradius: float | None
+    roll_damping: float
     compare: bool
     out: Path | None
 
@@ -110,7 +119,17 @@ def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients,
         options.density,
         options.depth,
     )
-    length = computation.mesh_length(hull)
+    length, beam = computation.mesh_size(hull)
+    roll, pitch, yaw = computation.default_gyradii(length, beam)
+    ballast = Ballast(
+        options.centre_depth,
+        (
+            options.roll_gyradius or roll,
+            options.pitch_gyradius or pitch,
+            options.pitch_gyradius or yaw,
+        ),
+        options.roll_damping,
+    )
     panel = options.panel
     if panel is None:
         panel = computation.default_panel(length)
@@ -127,12 +146,14 @@ def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients,
         def report_frequency(stage: str, share: float) -> None:
             report("Capytaine", share, stage)
 
-        found = computation.compute_coefficients(hull, frequencies, headings, report_frequency)
+        found = computation.compute_coefficients(
+            hull, frequencies, headings, ballast, report_frequency
+        )
         panels = int(found.source.split(" panels")[0].split()[-1])
         if not options.compare or panels > FINEST:
             return found, []
         some = frequencies[:: max(1, (len(frequencies) - 1) // (STUDIED - 1))][:STUDIED]
-        study = computation.study_mesh(hull, some, report_frequency)
+        study = computation.study_mesh(hull, some, ballast, report_frequency)
     lines = [
         f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to "
         "the largest value of the axis,"
@@ -140,6 +161,15 @@ def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients,
     for name, (change, axis) in study.change.items():
         lines.append(f"  {name} by at most {100.0 * change:.1f} % ({axis})")
     return found, lines
+
+
+def _largest_drift(found: Coefficients, drift: Array) -> str:
+    """Words on the largest mean drift of surge, sway and yaw."""
+    texts = []
+    for i, (axis, unit) in enumerate((("surge", "N/m^2"), ("sway", "N/m^2"), ("yaw", "N/m"))):
+        k, h = np.unravel_index(int(np.argmax(np.abs(drift[:, :, i]))), drift.shape[:2])
+        texts.append(f"{axis} {drift[k, h, i]:.4g} {unit} at {found.frequency[k]:.3g} rad/s")
+    return f"largest per square of the amplitude: {', '.join(texts)}"
 
 
 def _summary(found: Coefficients) -> list[str]:
@@ -168,4 +198,9 @@ def _summary(found: Coefficients) -> list[str]:
                 f"memory in {axes}: order {2 * len(sections)} for each axis, error "
                 f"{100.0 * error:.2g} % rms"
             )
+    if found.drift is not None:
+        lines += [
+            f"mean drift: {escape_for_terminal(found.drift_of)}",
+            f"  {_largest_drift(found, found.drift)}",
+        ]
     return lines

@@ -19,6 +19,13 @@ AXES = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
 SYMMETRIC = 1e-4
 SNAP = 1e-6  # vertices closer to the waterline than this share of the hull's size lie in it
 INFINITE = "infinite"
+# Product of wave number and depth above which the water is taken as deep: the waves then differ
+# from those of deep water by less than 0.3 % in their group velocity. In water of a finite depth
+# Capytaine's waves conserve energy less well the larger the product is
+DEEP = 4.5
+# Angles of a Kochin function beyond four times the wave number times the radius of the hull: its
+# square has twice the order of the function, whose terms decay fast above that product
+ANGLES = 48
 
 
 def triangles_of(request: dict[str, Any]) -> tuple[Any, Any]:
@@ -153,8 +160,44 @@ def geometry(body: Any) -> dict[str, Any]:
     }
 
 
+def kochin_function(problem: Any, result: Any) -> list[list[float]]:
+    """Return the Kochin function of a solution at equally spaced directions, from 0 on (T,).
+
+    It is the amplitude of the waves far from the body,
+    H(theta) = integral of (phi_n - phi d/dn) E over the hull / (4 pi),
+    E = cosh k (z + h) / cosh k h exp(-i k (x cos theta + y sin theta)), with the normal into the
+    water (J. N. Newman, J. Ship Research 11(1), 1967). The method of sources has the same function.
+
+    Args:
+        problem: Problem of Capytaine.
+        result: Its solution.
+    """
+    import numpy as np
+
+    mesh, k, depth = problem.body.mesh, problem.wavenumber, problem.water_depth
+    x, y, z = mesh.faces_centers.T
+    along, aside, up = mesh.faces_normals.T
+    count = 2 * int(2.0 * k * np.hypot(x, y).max() + 0.5 * ANGLES)
+    theta = 2.0 * np.pi / count * np.arange(count)[:, None]
+    if np.isinf(depth):
+        level = np.exp(k * z)
+        slope = level
+    else:
+        near, far = np.exp(k * z), np.exp(-k * (z + 2.0 * depth))
+        level = (near + far) / (1.0 + np.exp(-2.0 * k * depth))
+        slope = (near - far) / (1.0 + np.exp(-2.0 * k * depth))
+    wave = np.exp(-1j * k * (x * np.cos(theta) + y * np.sin(theta)))
+    outward = np.cos(theta) * along + np.sin(theta) * aside
+    gradient = k * wave * (slope * up - 1j * level * outward)
+    hull = problem.body.hull_mask
+    flux = problem.boundary_condition[hull] * wave * level - result.potential[hull] * gradient
+    return complex_pairs(flux @ mesh.faces_areas / (4.0 * np.pi))
+
+
 def radiation(solver: Any, body: Any, frequency: float, water: dict[str, Any]) -> Any:
-    """Return added mass and damping (6, 6) at one frequency.
+    """Return added mass and damping (6, 6) and Kochin functions (6, T) at one frequency.
+
+    At infinite frequency there are no waves, and no Kochin functions.
 
     Args:
         solver: Capytaine's solver.
@@ -163,8 +206,9 @@ def radiation(solver: Any, body: Any, frequency: float, water: dict[str, Any]) -
         water: Depth, density and gravity as Capytaine takes them.
     """
     import capytaine
+    import numpy as np
 
-    added, damping = [], []
+    added, damping, kochin = [], [], []
     for motion in AXES:
         problem = capytaine.RadiationProblem(
             body=body, radiating_dof=motion, omega=frequency, **water
@@ -172,7 +216,9 @@ def radiation(solver: Any, body: Any, frequency: float, water: dict[str, Any]) -
         result = solver.solve(problem)
         added.append([float(result.added_masses[axis]) for axis in AXES])
         damping.append([float(result.radiation_dampings[axis]) for axis in AXES])
-    return added, damping
+        if not np.isinf(frequency):
+            kochin.append(kochin_function(problem, result))
+    return added, damping, kochin
 
 
 def complex_pairs(values: Any) -> list[list[float]]:
@@ -183,7 +229,7 @@ def complex_pairs(values: Any) -> list[list[float]]:
 def excitation(
     solver: Any, body: Any, frequency: float, headings: list[float], water: dict[str, Any]
 ) -> Any:
-    """Return the excitation of waves of unit amplitude (H, 6) at one frequency.
+    """Return excitation (H, 6) and Kochin functions (H, T) of waves of unit amplitude.
 
     Args:
         solver: Capytaine's solver.
@@ -195,7 +241,7 @@ def excitation(
     import capytaine
     from capytaine.bem.airy_waves import froude_krylov_force
 
-    found = []
+    found, kochin = [], []
     for heading in headings:
         problem = capytaine.DiffractionProblem(
             body=body, wave_direction=heading, omega=frequency, **water
@@ -203,7 +249,20 @@ def excitation(
         result = solver.solve(problem)
         pressure = froude_krylov_force(problem)
         found.append(complex_pairs([result.forces[axis] + pressure[axis] for axis in AXES]))
-    return found
+        kochin.append(kochin_function(problem, result))
+    return found, kochin
+
+
+def water_of_waves(frequency: float, water: dict[str, Any]) -> dict[str, Any]:
+    """Return the water with the depth that waves of a frequency feel.
+
+    Args:
+        frequency: Angular frequency [rad/s].
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    if frequency * frequency * water["water_depth"] / water["g"] > DEEP:
+        return water | {"water_depth": float("inf")}
+    return water
 
 
 def main(path: str) -> None:
@@ -235,10 +294,13 @@ def main(path: str) -> None:
         if frequency not in done:
             row: dict[str, Any] = {"frequency": frequency}
             if frequency == INFINITE:
-                row["added_mass"], _ = radiation(solver, body, np.inf, water)
+                row["added_mass"], _, _ = radiation(solver, body, np.inf, water)
             else:
-                row["added_mass"], row["damping"] = radiation(solver, body, frequency, water)
-                row["excitation"] = excitation(solver, body, frequency, request["headings"], water)
+                own = water_of_waves(frequency, water)
+                found = radiation(solver, body, frequency, own)
+                row["added_mass"], row["damping"], row["radiation_kochin"] = found
+                waves = excitation(solver, body, frequency, request["headings"], own)
+                row["excitation"], row["diffraction_kochin"] = waves
             append_line(results, row)
         print(f"done {number} of {len(frequencies)}", flush=True)
 

@@ -5,7 +5,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,6 +20,8 @@ from boatsim.hydrodynamics.axes import (
     to_sname,
     with_memory,
 )
+from boatsim.hydrodynamics.mean_drift import DRIFT_AXES, mean_drift
+from boatsim.hydrodynamics.response import Ballast, floating_response
 from boatsim.physics.cache_folder import cache_folder
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
@@ -66,8 +68,9 @@ class MeshStudy:
 
     Attributes:
         panels: Numbers of panels of both.
-        change: For added mass and damping (entries on the diagonal) and the excitation of waves
-            from the bow the largest change over the largest value of the axis [-], and that axis.
+        change: For added mass and damping (entries on the diagonal), and for excitation and mean
+            drift of waves from the bow, the largest change over the largest value of the axis [-],
+            and that axis.
     """
 
     panels: tuple[int, int]
@@ -96,8 +99,8 @@ def default_frequencies(length: float, depth: float, number: int = FREQUENCIES) 
     return [float(w) for w in np.linspace(found[0], found[1], number)]
 
 
-def mesh_length(hull: HullMesh) -> float:
-    """Return the length of the hull's mesh along x [m].
+def mesh_size(hull: HullMesh) -> tuple[float, float]:
+    """Return length and beam of the hull's mesh [m].
 
     Args:
         hull: The hull.
@@ -120,7 +123,20 @@ def mesh_length(hull: HullMesh) -> float:
             f"--draught = {hull.draught:g} m; allowed is above 0 to the height of the mesh, "
             f"{high[2] - low[2]:g} m"
         )
-    return float(high[0] - low[0])
+    return float(high[0] - low[0]), float(high[1] - low[1])
+
+
+def default_gyradii(length: float, beam: float) -> tuple[float, float, float]:
+    """Return radii of gyration in roll, pitch and yaw [m] of a hull whose mass is not known.
+
+    They are 0.35 of the beam and a quarter of the length, the usual values for models whose
+    distribution of mass is not known (ITTC 7.5-02-07-02.1, Seakeeping Experiments).
+
+    Args:
+        length: Length of the hull [m].
+        beam: Beam of the hull [m].
+    """
+    return 0.35 * beam, 0.25 * length, 0.25 * length
 
 
 def default_panel(length: float) -> float:
@@ -208,7 +224,7 @@ def _run_worker(request: Path, report: Report) -> None:
 def coefficients_of_rows(
     rows: list[dict[str, Any]], hull: HullMesh, headings: list[float]
 ) -> Coefficients:
-    """Return coefficients in SNAME axes from results of Capytaine.
+    """Return coefficients in SNAME axes from results of Capytaine, without mean drift.
 
     Args:
         rows: Results of `run_capytaine`.
@@ -254,8 +270,32 @@ def _complex(pairs: Any) -> Array:
     return np.asarray(values[..., 0] + 1j * values[..., 1])
 
 
+def floating_coefficients(
+    rows: list[dict[str, Any]], hull: HullMesh, headings: list[float], ballast: Ballast
+) -> Coefficients:
+    """Return coefficients with the mean drift of the freely floating hull.
+
+    Args:
+        rows: Results of `run_capytaine`.
+        hull: The hull.
+        headings: Directions to which the waves run in SNAME axes (H,) [rad].
+        ballast: Distribution of the mass.
+
+    Raises:
+        BadInput: The hull would capsize.
+    """
+    found = coefficients_of_rows(rows, hull, headings)
+    response, extra = floating_response(found, ballast)
+    drift = mean_drift(rows, found, response, extra)
+    return replace(found, drift=drift, drift_of=ballast.words(found))
+
+
 def compute_coefficients(
-    hull: HullMesh, frequencies: list[float], headings: list[float], report: Report
+    hull: HullMesh,
+    frequencies: list[float],
+    headings: list[float],
+    ballast: Ballast,
+    report: Report,
 ) -> Coefficients:
     """Compute the coefficients of a hull by Capytaine and fit the memory of its radiation force.
 
@@ -263,29 +303,33 @@ def compute_coefficients(
         hull: The hull.
         frequencies: Angular frequencies [rad/s].
         headings: Directions to which the waves run [rad], 0 to pi.
+        ballast: Distribution of the mass, by which the hull moves while it drifts.
         report: Called with a text and the fraction done.
 
     Raises:
-        BadInput: Capytaine is not installed or fails.
+        BadInput: Capytaine is not installed or fails, or the hull would capsize.
     """
     rows = run_capytaine(hull, frequencies, headings, report)
     report("memory of the radiation force", 1.0)
-    return with_memory(coefficients_of_rows(rows, hull, headings))
+    return with_memory(floating_coefficients(rows, hull, headings, ballast))
 
 
-def study_mesh(hull: HullMesh, frequencies: list[float], report: Report) -> MeshStudy:
+def study_mesh(
+    hull: HullMesh, frequencies: list[float], ballast: Ballast, report: Report
+) -> MeshStudy:
     """Compare a mesh with the same mesh with edges of half the length.
 
     Args:
         hull: The hull.
         frequencies: Some of the frequencies of the computation [rad/s].
+        ballast: Distribution of the mass.
         report: Called with a text and the fraction done.
     """
     headings = [0.75 * np.pi]  # waves that excite all axes
     found, panels = [], []
     for halvings in (0, 1):
         rows = run_capytaine(hull, frequencies, headings, report, halvings)
-        found.append(coefficients_of_rows(rows, hull, headings))
+        found.append(floating_coefficients(rows, hull, headings, ballast))
         panels.append(next(row["panels"] for row in rows if row["frequency"] == "geometry"))
     coarse, fine = found
     change = {}
@@ -296,6 +340,11 @@ def study_mesh(hull: HullMesh, frequencies: list[float], report: Report) -> Mesh
     change["excitation"] = _largest_change(
         coarse.excitation.reshape(-1, len(AXES)), fine.excitation.reshape(-1, len(AXES))
     )
+    drifts = np.zeros((2, len(frequencies), len(AXES)))
+    for place, one in enumerate(found):
+        assert one.drift is not None
+        drifts[place][:, DRIFT_AXES] = one.drift[:, 0]
+    change["mean drift"] = _largest_change(drifts[0], drifts[1])
     return MeshStudy((panels[0], panels[1]), change)
 
 

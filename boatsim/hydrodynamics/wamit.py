@@ -1,4 +1,7 @@
-"""Coefficients from the output files of WAMIT: NAME.1, NAME.3 or NAME.2, and NAME.hst."""
+"""Coefficients from the output files of WAMIT.
+
+They are NAME.1, NAME.3 or NAME.2, and where they exist NAME.hst and NAME.8 or NAME.9.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,14 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.hydrodynamics.axes import excitation_to_sname, to_sname
+from boatsim.hydrodynamics.axes import SIGNS, excitation_to_sname, to_sname
 from boatsim.hydrodynamics.headings import on_starboard_side
+from boatsim.hydrodynamics.mean_drift import DRIFT_AXES
 from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array
 
 COLUMNS = 5  # of NAME.1: period, row, column, added mass, damping; the last only of finite periods
+DRIFT_COLUMNS = 8  # of NAME.8: period, two directions, axis, modulus, phase, real, imaginary part
+SAME_DIRECTION = 1e-3  # [deg] between directions that are the same
 
 
 @dataclass(frozen=True)
@@ -74,6 +80,7 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
     else:
         infinite = to_sname(np.nan_to_num(infinite))
     heading, excitation = _read_excitation(path, frequency, scale)
+    drift, drift_of = _read_drift(path, frequency, heading, scale)
     return Coefficients(
         source=f"WAMIT, {path.name}",
         density=scale.density,
@@ -88,6 +95,8 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         infinite_added_mass=infinite,
         heading=heading,
         excitation=excitation,
+        drift=drift,
+        drift_of=drift_of,
     )
 
 
@@ -134,6 +143,44 @@ def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[
     return on_starboard_side(
         np.radians(-heading), excitation_to_sname(excitation, conjugate=False), file
     )
+
+
+def _read_drift(
+    path: Path, frequency: Array, heading: Array, scale: OutputScale
+) -> tuple[Array | None, str]:
+    """Return the mean drift of NAME.8 (momentum) or NAME.9 (pressure), and its origin in words.
+
+    Rows of two waves of different directions are not used, and neither are the moments about the
+    axes of the body, whose numbers are negative.
+    """
+    file = path.with_suffix(".8")
+    if not file.is_file():
+        file = path.with_suffix(".9")
+    if not file.is_file():
+        return None, ""
+    table: dict[float, Array] = {}
+    for row in _read_numbers(file):
+        if len(row) < DRIFT_COLUMNS:
+            raise BadInput(f"{file}: a row has {len(row)} columns; {DRIFT_COLUMNS} are required")
+        i = int(row[3]) - 1
+        if row[0] <= 0.0 or abs(row[1] - row[2]) > SAME_DIRECTION or i not in DRIFT_AXES:
+            continue
+        k = int(np.argmin(np.abs(frequency - 2.0 * np.pi / row[0])))
+        values = table.setdefault(row[1], np.full((len(frequency), 6), np.nan))
+        values[k, i] = row[6] * scale.density * GRAVITY * scale.length ** (1 + (i > 2))
+    if not table:
+        raise BadInput(f"{file}: there is no mean drift of waves of one direction")
+    angles = np.array(sorted(table))
+    values = np.stack([table[angle] for angle in angles], axis=1) * SIGNS
+    found, values = on_starboard_side(np.radians(-angles), values, file)
+    drift = values[:, :, DRIFT_AXES]
+    if len(found) != len(heading) or not np.allclose(
+        found, heading, atol=np.radians(SAME_DIRECTION)
+    ):
+        raise BadInput(f"{file}: the directions differ from those of the excitation")
+    if np.isnan(drift).any():
+        raise BadInput(f"{file}: surge, sway and yaw of every period and direction are required")
+    return drift, f"motions of {file.name}"
 
 
 def _read_restoring(path: Path, scale: OutputScale) -> Array:

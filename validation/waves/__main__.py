@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.waves import hemisphere, response, section
+from validation.waves import drift, hemisphere, response, section
 
 WORK = Path("out/validation/waves")
+STRONG = 0.3  # reflection above which the error of the drift is counted; below the drift is small
 
 
 def print_hemisphere(folder: Path) -> None:
@@ -56,6 +57,42 @@ def print_irregular(folder: Path) -> None:
         print(f"{axis:6} {found:12.4g} {expected:10.4g} {unit:4} {error:5.1f} %")
 
 
+def print_drift(folder: Path) -> None:
+    """Print the mean drift of a cylinder and of the ship section next to closed forms."""
+    print(
+        "\nMean drift of a held circular cylinder in deep water, draught three radii, against the"
+    )
+    print("series of T. H. Havelock, Proc. R. Soc. A 175, 1940; energy: relative error of its")
+    print("conservation in the scattered waves")
+    print(" k a   F / rho g a A^2   Havelock    error    energy")
+    for cylinder in drift.cylinder_drift(folder):
+        error = 100.0 * (cylinder.force / cylinder.exact - 1.0)
+        print(
+            f"{cylinder.number:4.1f}  {cylinder.force:16.4f}  {cylinder.exact:9.4f}"
+            f"  {error:5.1f} %  {100.0 * cylinder.energy:6.1f} %"
+        )
+    results = drift.section_drift(folder)
+    print("\nMean drift of the ship section in deep water and beam waves, per length and square of")
+    print(
+        "the amplitude [N/m^3], by the far-field method, against H. Maruo, J. Ship Research 4(3),"
+    )
+    print("1960, with the reflection by the pressure on the hull")
+    print("period s  section  reflection   far field       Maruo   error")
+    for row in results:
+        words = "free" if row.moves else "held"
+        print(
+            f"{2.0 * np.pi / row.frequency:8.3f}  {words:7}  {row.reflection:10.3f}"
+            f"  {row.far_field:10.1f}  {row.maruo:10.1f}  {100.0 * row.error:5.1f} %"
+        )
+    for words, moves in (("held", False), ("free", True)):
+        strong = [row for row in results if row.moves == moves and row.reflection > STRONG]
+        worst = max(100.0 * abs(row.error) for row in strong)
+        print(
+            f"largest error where the {words} section reflects more than {STRONG:g} of the "
+            f"amplitude: {worst:.1f} % ({len(strong)} periods)"
+        )
+
+
 def print_section(folder: Path) -> None:
     """Print the errors of the prediction of the recorded ship section."""
     results = section.run_errors(folder)
@@ -87,8 +124,9 @@ def main() -> None:
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
     if has_capytaine:
         print_hemisphere(folder)
+        print_drift(folder)
     else:
-        print("hemisphere: skipped, Capytaine is not installed")
+        print("hemisphere and drift: skipped, Capytaine is not installed")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():

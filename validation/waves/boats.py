@@ -7,45 +7,12 @@ from scipy.interpolate import CubicSpline
 
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.table import Coefficients
-from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel, load_vessel
 
 HULL = """<mujoco><worldbody><body name="hull">
 <geom type="box" size="1 0.5 0.1"/>
 </body></worldbody></mujoco>
 """
-
-
-def linear_stiffness(found: Coefficients, mass: float, depth: float) -> Array:
-    """Return the hydrostatic stiffness (6, 6) of a floating hull with its weight.
-
-    Args:
-        found: Coefficients of the hull.
-        mass: Mass of the hull [kg].
-        depth: Depth of the mass centre below the origin [m].
-    """
-    stiffness = found.restoring.copy()
-    stiffness[3, 3] += mass * GRAVITY * depth
-    stiffness[4, 4] += mass * GRAVITY * depth
-    return stiffness
-
-
-def rigid_body(mass: float, centre: tuple[float, float], inertia: Array) -> Array:
-    """Return the mass matrix (6, 6) of a rigid body about the origin.
-
-    Args:
-        mass: Mass [kg].
-        centre: Mass centre ahead of the origin and below it [m].
-        inertia: Moments of inertia (3,) about the mass centre [kg m^2].
-    """
-    x, z = centre
-    lever = np.array([[0.0, -z, 0.0], [z, 0.0, -x], [0.0, x, 0.0]])
-    found = np.zeros((6, 6))
-    found[:3, :3] = mass * np.eye(3)
-    found[:3, 3:] = -mass * lever
-    found[3:, :3] = mass * lever
-    found[3:, 3:] = np.diag(inertia) - mass * lever @ lever
-    return found
 
 
 def linear_response(

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
-from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
-from validation.waves.hulls import write_stl
+from validation.waves.hulls import revolved, write_stl
 
 # A. Hulme, The wave forces acting on a floating hemisphere undergoing forced periodic oscillations,
 # J. Fluid Mech. 121, 1982, tables 1 (heave) and 2 (surge): k a -> added mass and damping over the
@@ -38,26 +37,9 @@ def write_hemisphere(path: Path, rings: int = RINGS, meridians: int = MERIDIANS)
         meridians: Number of panels around it.
     """
     polar = np.linspace(0.0, 0.5 * np.pi, rings + 1)
-    around = np.linspace(0.0, 2.0 * np.pi, meridians + 1)
     radius = RADIUS / volume_share(rings, meridians) ** (1.0 / 3.0)
-    points = np.stack(
-        [
-            np.outer(np.cos(polar), np.cos(around)),
-            np.outer(np.cos(polar), np.sin(around)),
-            -np.outer(np.sin(polar), np.ones(meridians + 1)),
-        ],
-        axis=-1,
-    )
-    points[..., :] *= radius
-    write_stl(path, _triangles(points))
-
-
-def _triangles(points: Array) -> Array:
-    """Return the triangles (N, 3, 3) of a grid of points, counter-clockwise from below."""
-    a, b = points[:-1, :-1], points[:-1, 1:]
-    c, d = points[1:, 1:], points[1:, :-1]
-    first, second = np.stack([a, d, c], axis=2), np.stack([a, c, b], axis=2)
-    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+    profile = radius * np.column_stack([np.cos(polar), -np.sin(polar)])
+    write_stl(path, revolved(profile, meridians))
 
 
 def volume_share(rings: int, meridians: int) -> float:

@@ -54,6 +54,29 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
     return np.concatenate(found)
 
 
+def revolved(profile: Array, meridians: int) -> Array:
+    """Return the triangles (N, 3, 3) of a surface of revolution about the vertical axis.
+
+    Args:
+        profile: Radius and height of the circles (M, 2) [m], from the waterline to the keel.
+        meridians: Number of panels around it.
+    """
+    around = np.linspace(0.0, 2.0 * np.pi, meridians + 1)
+    radius, height = profile.T
+    points = np.stack(
+        [
+            np.outer(radius, np.cos(around)),
+            np.outer(radius, np.sin(around)),
+            np.outer(height, np.ones(meridians + 1)),
+        ],
+        axis=-1,
+    )
+    a, b = points[:-1, :-1], points[:-1, 1:]
+    c, d = points[1:, 1:], points[1:, :-1]
+    first, second = np.stack([a, d, c], axis=2), np.stack([a, c, b], axis=2)
+    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+
+
 def write_stl(path: Path, triangles: Array) -> None:
     """Write triangles to an STL file as text; those without area are left out.
 
@@ -123,26 +146,31 @@ class Section:
         beam: Beam [m].
         draught: Draught [m].
         bilge: Radius of the bilges [m].
+        panels: Numbers of panels on a side and on half of the bottom.
     """
 
-    def __init__(self, beam: float, draught: float, bilge: float) -> None:
+    def __init__(
+        self, beam: float, draught: float, bilge: float, panels: tuple[int, int] = (2, 2)
+    ) -> None:
         """Set the dimensions.
 
         Args:
             beam: Beam [m].
             draught: Draught [m].
             bilge: Radius of the bilges [m].
+            panels: Numbers of panels on a side and on half of the bottom.
         """
-        self.beam, self.draught, self.bilge = beam, draught, bilge
+        self.beam, self.draught, self.bilge, self.panels = beam, draught, bilge, panels
 
     def outline(self) -> list[tuple[float, float]]:
         """Return points (y to port, z up) from the port side above water to starboard [m]."""
         half, depth, r = 0.5 * self.beam, self.draught, self.bilge
         freeboard = 0.25 * depth
-        right = [(half, freeboard), (half, 0.0), (half, -0.5 * (depth - r)), (half, r - depth)]
+        side, bottom = self.panels
+        right = [(half, freeboard)]
+        right += [(half, float(z)) for z in np.linspace(0.0, r - depth, side + 1)]
         for angle in np.linspace(0.0, 0.5 * np.pi, 4)[1:]:
             right.append((half - r + r * np.cos(angle), r - depth - r * np.sin(angle)))
-        right.append((0.5 * (half - r), -depth))
-        right.append((0.0, -depth))
+        right += [(float(y), -depth) for y in np.linspace(half - r, 0.0, bottom + 1)[1:]]
         left = [(-y, z) for y, z in right[-2::-1]]
         return [(float(y), float(z)) for y, z in right + left]

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.files import read_coefficients
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.stepper import State
-from validation.waves.boats import linear_response, linear_stiffness, rigid_body, write_vessel
+from validation.waves.boats import linear_response, write_vessel
 
 OTTER = Path(__file__).parents[2] / "models" / "otter" / "hydrodynamics"
 # Rigid body of `models/otter`, with the mass centre above the centre of buoyancy

@@ -9,18 +9,20 @@ memory, buoyancy, weight and mass. No number is fitted, and there is no viscous 
 import csv
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from boatsim.hydrodynamics.axes import with_memory
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
+from boatsim.hydrodynamics.response import linear_stiffness
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.open_water import OpenWater
-from validation.waves.boats import linear_stiffness, write_vessel
+from validation.waves.boats import write_vessel
 from validation.waves.hulls import Section, write_section
 
 RUNS = Path(__file__).parents[3] / "shared" / "recordings" / "section_beam_waves" / "runs_clean"
@@ -29,9 +31,6 @@ BEAM, DRAUGHT, BILGE, LENGTH = 0.40, 0.20, 0.0512, 0.586  # [m]
 MASS, RAILS, INERTIA = 46.8, 0.303, 0.970  # [kg], [kg] more in sway, [kg m^2]
 DEPTH = DRAUGHT - 0.106  # [m] of the mass centre below the waterline; it is 0.106 m above the keel
 DENSITY, WATER = 1000.0, 1.0  # [kg/m^3], [m] depth of the flume
-LONG, SHORT = 6.0, 4.0  # [m] lengths of the two bodies; ten beams and more
-PANEL = 0.25  # [m] along the bodies
-FREQUENCIES = [float(w) for w in np.linspace(2.0, 11.0, 19)]  # [rad/s] waves of 0.57 to 3.1 s
 BEGIN = 20.0  # [s] the section is at rest until then
 RATE = 200.0  # [Hz] of the simulation
 LONGEST = 1.0  # [s] shorter waves are counted apart
@@ -80,23 +79,62 @@ heave = 1.0
 """
 
 
-def section_coefficients(folder: Path) -> Coefficients:
-    """Return the coefficients of the section, computed by Capytaine.
+class LongBodies(NamedTuple):
+    """Two long bodies with the section, whose difference is the section without ends."""
+
+    short: float  # [m] length
+    long: float  # [m]
+    panel: float  # [m] along the bodies
+    section: Section
+    depth: float  # [m] of the water, 0: deep
+    frequencies: list[float]  # [rad/s]
+
+
+FLUME = LongBodies(
+    short=4.0,  # ten beams
+    long=6.0,
+    panel=0.25,
+    section=Section(BEAM, DRAUGHT, BILGE),
+    depth=WATER,
+    frequencies=[float(w) for w in np.linspace(2.0, 11.0, 19)],  # waves of 0.57 to 3.1 s
+)
+
+
+class BodyResult(NamedTuple):
+    """Result of Capytaine for one long body."""
+
+    rows: list[dict[str, Any]]
+    coefficients: Coefficients
+
+
+def computed_bodies(folder: Path, bodies: LongBodies) -> tuple[BodyResult, BodyResult]:
+    """Return the results of the short and of the long body in beam waves.
 
     Args:
         folder: Working folder.
+        bodies: The bodies.
     """
-    bodies = []
-    for length in (SHORT, LONG):
+    results = []
+    for length in (bodies.short, bodies.long):
         path = folder / f"section_{length:g}.stl"
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_section(path, Section(BEAM, DRAUGHT, BILGE), length, round(length / PANEL))
-        hull = HullMesh(path, DRAUGHT, density=DENSITY, depth=WATER)
+        write_section(path, bodies.section, length, round(length / bodies.panel))
+        hull = HullMesh(path, DRAUGHT, density=DENSITY, depth=bodies.depth)
         heading = [0.5 * np.pi]
-        rows = run_capytaine(hull, FREQUENCIES, heading, lambda stage, share: None)
-        bodies.append(coefficients_of_rows(rows, hull, heading))
-    short, long = bodies
-    share = LENGTH / (LONG - SHORT)
+        rows = run_capytaine(hull, bodies.frequencies, heading, lambda stage, share: None)
+        results.append(BodyResult(rows, coefficients_of_rows(rows, hull, heading)))
+    return results[0], results[1]
+
+
+def section_coefficients(folder: Path, bodies: LongBodies) -> Coefficients:
+    """Return the coefficients of the section, without memory.
+
+    Args:
+        folder: Working folder.
+        bodies: Bodies of which it is the difference.
+    """
+    short, long = (result.coefficients for result in computed_bodies(folder, bodies))
+    share = LENGTH / (bodies.long - bodies.short)
     values = {}
     for name in (
         "added_mass",
@@ -113,7 +151,7 @@ def section_coefficients(folder: Path) -> Coefficients:
         for axis in ("surge", "pitch", "yaw"):
             values[name][..., AXES.index(axis), :] = 0.0
             values[name][..., :, AXES.index(axis)] = 0.0
-    return with_memory(replace(long, source=f"{long.source}, of a section", **values))
+    return replace(long, source=f"{long.source}, of a section", **values)
 
 
 def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
@@ -122,7 +160,7 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
     Args:
         folder: Working folder.
     """
-    coefficients = section_coefficients(folder)
+    coefficients = with_memory(section_coefficients(folder, FLUME))
     write_coefficients(folder / "coefficients", coefficients)
     found = read_coefficients(folder / "coefficients")
     results = []

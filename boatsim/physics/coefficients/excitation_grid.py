@@ -1,36 +1,41 @@
-"""Excitation of waves on a regular grid of frequency and heading, read by compiled laws.
+"""Excitation and mean drift of waves on a regular grid of frequency and heading.
 
-The table of the effect has the lowest frequency [rad/s], the distance of frequencies [rad/s], the
-numbers of frequencies and of headings, then for each frequency and heading the real and imaginary
-part of the six components. Headings extend from 0 to pi; those on the other side of the hull follow
-from its symmetry. Values in between are linear in the frequency and cubic in the heading.
+Compiled laws read the table of the effect. It has the lowest frequency [rad/s], the distance of
+frequencies [rad/s], the numbers of frequencies and of headings, then for each frequency and heading
+the real and imaginary part of the six components of the excitation, and after all of these for each
+frequency and heading the mean drift in surge, sway and yaw per square of the amplitude. Headings
+extend from 0 to pi; those on the other side of the hull follow from its symmetry. Values in between
+are linear in the frequency and cubic in the heading.
 """
 
 from functools import lru_cache
 from math import atan2, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from boatsim.errors import BadInput
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
-VALUES = 12  # of each frequency and heading
+VALUES, DRIFTS = 12, 3  # of each frequency and heading, of excitation and of drift
 # Sizes of the grid, by which the values in between err by less than 1 % of the largest one for
 # hulls in waves of half their length and more (tests)
 FREQUENCIES, HEADINGS = 96, 25
 # Sign of a component in the mirror at the plane of symmetry of the hull
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+DRIFT_MIRROR = np.array([1.0, -1.0, -1.0])  # of surge, sway and yaw
 CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
 
 
 @lru_cache(maxsize=8)
 def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
-    """Return the table of the excitation of a hull, as compiled laws read it.
+    """Return the table of excitation and mean drift of a hull, as compiled laws read it.
+
+    The mean drift is zero if it is not known.
 
     Args:
         found: Coefficients with headings from 0 to pi.
@@ -47,17 +52,33 @@ def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
         )
     frequency = np.linspace(found.frequency[0], found.frequency[-1], FREQUENCIES)
     over_frequency = CubicSpline(found.frequency, found.excitation)(frequency)
-    # around the whole hull, so that the spline is periodic
-    around = np.concatenate([heading, 2.0 * pi - heading[-2:0:-1], [2.0 * pi]])
-    other = over_frequency[:, -2:0:-1] * MIRROR
-    values = np.concatenate([over_frequency, other, over_frequency[:, :1]], axis=1)
-    around[0], around[len(heading) - 1] = 0.0, pi
-    spline = CubicSpline(around, values, axis=1, bc_type="periodic")
-    grid = spline(np.linspace(0.0, pi, HEADINGS))
+    grid = _over_headings(heading, over_frequency, MIRROR)
     pairs = np.stack([grid.real, grid.imag], axis=-1)
+    drift = np.zeros((FREQUENCIES, HEADINGS, DRIFTS))
+    if found.drift is not None:
+        # the drift can have a narrow peak at a resonance, next to which a spline would oscillate
+        over_frequency = PchipInterpolator(found.frequency, found.drift)(frequency)
+        drift = _over_headings(heading, over_frequency, DRIFT_MIRROR)
     step = frequency[1] - frequency[0]
     head = (float(frequency[0]), float(step), float(FREQUENCIES), float(HEADINGS))
-    return (*head, *pairs.ravel().tolist())
+    return (*head, *pairs.ravel().tolist(), *drift.ravel().tolist())
+
+
+def _over_headings(heading: Array, values: Array, mirror: Array) -> Array:
+    """Return values (F, H, C) at the headings of the grid.
+
+    Args:
+        heading: Headings (H,) from 0 to pi [rad].
+        values: Values at these headings.
+        mirror: Signs of the components in the mirror (C,).
+    """
+    # around the whole hull, so that the spline is periodic
+    around = np.concatenate([heading, 2.0 * pi - heading[-2:0:-1], [2.0 * pi]])
+    other = values[:, -2:0:-1] * mirror
+    whole = np.concatenate([values, other, values[:, :1]], axis=1)
+    around[0], around[len(heading) - 1] = 0.0, pi
+    spline = CubicSpline(around, whole, axis=1, bc_type="periodic")
+    return np.asarray(spline(np.linspace(0.0, pi, HEADINGS)))
 
 
 @njit(inline="always")
@@ -94,6 +115,42 @@ def folded(place: Any, last: Any) -> tuple[Any, float]:
     return place, 1.0
 
 
+class GridPlace(NamedTuple):
+    """Place of a wave on the grid of frequency and heading."""
+
+    low: Any  # number of the frequency below it
+    part: float  # share of the next frequency
+    left: Any  # number of the heading before it
+    side: float  # -1 for a wave that runs to port
+    beyond: bool  # whether its frequency is above those of the grid
+
+
+@njit(inline="always")
+def grid_place(frequency: float, ahead: float, across: float, p: Array, first: Any) -> Any:
+    """Return the place of a wave on the grid, and the weights of the four headings around it.
+
+    Frequencies outside the grid have the place of its end.
+
+    Args:
+        frequency: Frequency of the wave [rad/s].
+        ahead: Cosine of the direction to which the wave runs, relative to the hull.
+        across: Sine of it, to starboard.
+        p: Parameters and tables.
+        first: Index of the table.
+    """
+    count, headings = int(p[first + 2]), int(p[first + 3])
+    along = max((frequency - p[first]) / p[first + 1], 0.0)
+    beyond = along > count - 1.0
+    along = min(along, count - 1.0)
+    low = min(int(along), count - 2)
+    side = 1.0
+    if across < 0.0:
+        side = -1.0
+    bearing = atan2(side * across, ahead) / pi * (headings - 1.0)
+    left = min(int(bearing), headings - 2)
+    return GridPlace(low, along - low, left, side, beyond), cubic_weights(bearing - left)
+
+
 @njit
 def excitation_force(
     frequency: float, ahead: float, across: float, c: float, s: float, p: Array, first: Any
@@ -113,27 +170,19 @@ def excitation_force(
     Returns:
         Force [N/m] and moment [N].
     """
-    count, headings = int(p[first + 2]), int(p[first + 3])
-    along = max((frequency - p[first]) / p[first + 1], 0.0)
-    if along > count - 1.0:
+    place, weights = grid_place(frequency, ahead, across, p, first)
+    if place.beyond:
         return Wrench(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    low = min(int(along), count - 2)
-    part = along - low
-    side = 1.0
-    if across < 0.0:
-        side = -1.0
-    bearing = atan2(side * across, ahead) / pi * (headings - 1.0)
-    left = min(int(bearing), headings - 2)
-    weights = cubic_weights(bearing - left)
+    headings = int(p[first + 3])
     X = Y = Z = K = M = N = 0.0
     for j in range(4):
-        heading, sign = folded(left - 1 + j, headings - 1)
-        mirrored = side * sign
+        heading, sign = folded(place.left - 1 + j, headings - 1)
+        mirrored = place.side * sign
         for i in range(2):
-            share = weights[j] * (1.0 - part)
+            share = weights[j] * (1.0 - place.part)
             if i == 1:
-                share = weights[j] * part
-            at = first + HEAD + ((low + i) * headings + heading) * VALUES
+                share = weights[j] * place.part
+            at = first + HEAD + ((place.low + i) * headings + heading) * VALUES
             turned = share * mirrored
             X += share * (p[at] * c - p[at + 1] * s)
             Y += turned * (p[at + 2] * c - p[at + 3] * s)
@@ -142,3 +191,38 @@ def excitation_force(
             M += share * (p[at + 8] * c - p[at + 9] * s)
             N += turned * (p[at + 10] * c - p[at + 11] * s)
     return Wrench(X, Y, Z, K, M, N)
+
+
+@njit
+def mean_drift_force(
+    frequency: float, ahead: float, across: float, p: Array, first: Any
+) -> tuple[float, float, float]:
+    """Return the mean drift of one wave of unit amplitude.
+
+    Args:
+        frequency: Frequency of the wave [rad/s]. Outside those of the table the value at its end is
+            taken: the drift of short waves, which the hull reflects, depends little on them.
+        ahead: Cosine of the direction to which the wave runs, relative to the hull.
+        across: Sine of it, to starboard.
+        p: Parameters and tables.
+        first: Index of the table.
+
+    Returns:
+        Force in surge and sway [N/m^2] and moment in yaw [N/m].
+    """
+    place, weights = grid_place(frequency, ahead, across, p, first)
+    count, headings = int(p[first + 2]), int(p[first + 3])
+    begin = first + HEAD + count * headings * VALUES
+    X = Y = N = 0.0
+    for j in range(4):
+        heading, sign = folded(place.left - 1 + j, headings - 1)
+        for i in range(2):
+            share = weights[j] * (1.0 - place.part)
+            if i == 1:
+                share = weights[j] * place.part
+            at = begin + ((place.low + i) * headings + heading) * DRIFTS
+            turned = share * place.side * sign
+            X += share * p[at]
+            Y += turned * p[at + 1]
+            N += turned * p[at + 2]
+    return X, Y, N

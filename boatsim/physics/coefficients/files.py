@@ -4,7 +4,7 @@
     radiation.csv       a row for each frequency and row of the matrices: added mass and damping
     excitation.csv      a row for each frequency and heading: force per amplitude of the wave
     memory.csv          sections of the model of the memory of the radiation force
-    drift.csv           a row for each frequency and heading: mean drift of the held hull
+    drift.csv           a row for each frequency and heading: mean drift
 
 The units and axes are those of `table.Coefficients`.
 """
@@ -101,6 +101,8 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     for words, (key, matrix) in matrices.items():
         rows = ",\n".join(f"    {toml_value(_rounded(row))}" for row in matrix)
         lines += [f"# {words}; rows and columns: {', '.join(AXES)}", f"{key} = [\n{rows},\n]"]
+    if found.drift is not None:
+        lines.append(f"drift_of = {toml_value(found.drift_of)}  # the hull of drift.csv")
     if found.memory is not None:
         error = toml_value(_rounded(np.array(found.memory.error)))
         lines.append(f"memory_error = {error}  # rms of the model of memory.csv over that of K")
@@ -110,7 +112,9 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
     if found.memory is not None:
         _write_table(folder / MEMORY, MEMORY_COLUMNS, _memory_rows(found.memory))
-    if found.drift is not None:
+    if found.drift is None:
+        (folder / DRIFT).unlink(missing_ok=True)  # of earlier coefficients
+    else:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
 
 
@@ -187,8 +191,7 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
         memory = _read_memory(folder / MEMORY, header.get("memory_error", [0.0, 0.0]), label)
     drift = None
     if (folder / DRIFT).is_file():
-        table = _read_table(folder / DRIFT, DRIFT_COLUMNS)
-        drift = _numbers(table, 2, folder / DRIFT).reshape(len(frequency), len(heading), 3)
+        drift = _read_drift(folder / DRIFT, frequency, heading)
     return Coefficients(
         source=str(header.get("source", "")),
         density=_number(header, "density", label),
@@ -205,6 +208,7 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
         excitation=excitation,
         memory=memory,
         drift=drift,
+        drift_of=str(header.get("drift_of", "")),
     )
 
 
@@ -288,6 +292,14 @@ def _read_excitation(path: Path, frequency: Array) -> tuple[Array, Array]:
     if not np.allclose(table[:, :, 1], heading) or not np.all(np.diff(heading) > 0.0):
         raise BadInput(f"{path}: headings must increase and be the same at every frequency")
     return heading, table[:, :, 2::2] + 1j * table[:, :, 3::2]
+
+
+def _read_drift(path: Path, frequency: Array, heading: Array) -> Array:
+    rows = _numbers(_read_table(path, DRIFT_COLUMNS), 0, path)
+    waves = np.stack(np.meshgrid(frequency, heading, indexing="ij"), axis=-1).reshape(-1, 2)
+    if rows.shape[0] != len(waves) or not np.allclose(rows[:, :2], waves):
+        raise BadInput(f"{path}: frequencies and headings must be those of {EXCITATION}")
+    return rows[:, 2:].reshape(len(frequency), len(heading), 3)
 
 
 def _read_memory(path: Path, error: object, label: Path) -> MemoryModel:

@@ -33,7 +33,8 @@ class Coefficients:
         excitation: Complex excitation (N, H, 6) [N/m, N].
         memory: State-space model of the memory of the radiation force; None without one.
         drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
-            amplitude, of the hull that is held [N/m^2, N/m]; None if it is not known.
+            amplitude [N/m^2, N/m]; None if it is not known.
+        drift_of: Hull that drifts, in words: its mass and gyradii.
     """
 
     source: str
@@ -51,3 +52,4 @@ class Coefficients:
     excitation: Array
     memory: MemoryModel | None = None
     drift: Array | None = None
+    drift_of: str = ""

@@ -1,4 +1,4 @@
-"""Panel wave loads: excitation of a sea from coefficients over frequency and heading."""
+"""Panel wave loads: excitation and drift of a sea from coefficients over frequency and heading."""
 
 from dataclasses import dataclass, field
 from math import cos, pi, sin
@@ -8,7 +8,11 @@ from numba import njit
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
-from boatsim.physics.coefficients.excitation_grid import excitation_force, excitation_grid
+from boatsim.physics.coefficients.excitation_grid import (
+    excitation_force,
+    excitation_grid,
+    mean_drift_force,
+)
 from boatsim.physics.coefficients.files import read_coefficients
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
@@ -19,14 +23,16 @@ DEPTHS = (
     0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
 )
 # The grid without coefficients: no force
-EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 48)
+EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60)
 
 
 @njit
 def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
-    """Return the first-order force of a sea on the hull, a sum over wave components.
+    """Return the force of a sea on the hull, a sum over wave components.
 
-    The waves travel on the water, which moves with the current.
+    The waves travel on the water, which moves with the current. The drift is the product of the
+    complex elevation and the complex elevation with its components weighted by their mean drift,
+    which equals the sum over pairs of components.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -40,6 +46,8 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     X = Y = Z = K = M = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
+    rise = turn = 0.0  # complex elevation at the origin of motion
+    surge_rise = surge_turn = sway_rise = sway_turn = yaw_rise = yaw_turn = 0.0
     sea = sea_state(q)
     ahead, across, run = heading_of_waves(q.toward, m)
     for k in range(int(sea.number)):
@@ -48,44 +56,63 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
             ahead, across, run = heading_of_waves(wave_direction(k, q), m)
         # Components have a trough at phase 0
         here = w * m.t - wave_number(w, q.depth) * run + phase + pi
-        f = excitation_force(w, ahead, across, cos(here), sin(here), p, first)
+        c, s = cos(here), sin(here)
+        f = excitation_force(w, ahead, across, c, s, p, first)
         X += amplitude * f.X
         Y += amplitude * f.Y
         Z += amplitude * f.Z
         K += amplitude * f.K
         M += amplitude * f.M
         N += amplitude * f.N
+        if q.drift > 0.0:
+            surge, sway, yaw = mean_drift_force(w, ahead, across, p, first)
+            c, s = amplitude * c, amplitude * s
+            rise, turn = rise + c, turn + s
+            surge_rise, surge_turn = surge_rise + surge * c, surge_turn + surge * s
+            sway_rise, sway_turn = sway_rise + sway * c, sway_turn + sway * s
+            yaw_rise, yaw_turn = yaw_rise + yaw * c, yaw_turn + yaw * s
+    X += q.drift * (rise * surge_rise + turn * surge_turn)
+    Y += q.drift * (rise * sway_rise + turn * sway_turn)
+    N += q.drift * (rise * yaw_rise + turn * yaw_turn)
     return wrench(X=X, Y=Y, Z=Z, K=K, M=M, N=N)
 
 
 @dataclass(frozen=True)
 class PanelWaveLoads(SeaParameters, Force):
-    """First-order forces of the waves of a spectrum, from a table of a boundary element method.
+    """Forces and drift of the waves of a spectrum, from a table of a boundary element method.
 
-    tau_j = Re sum_i a_i X_j(w_i, beta_i) exp(i theta_i),
+    tau_j = Re sum_i a_i X_j(w_i, beta_i) exp(i theta_i)
+          + f sum_i sum_k a_i a_k (D_j(w_i, beta_i) + D_j(w_k, beta_k)) / 2 cos(theta_i - theta_k),
     theta_i = w_i t - k_i (x cos gamma_i + y sin gamma_i) + epsilon_i
 
     X is the excitation of a wave of unit amplitude: pressure of the undisturbed wave and
     diffraction, without forward speed. beta = gamma - psi is the direction of the wave relative to
-    the hull. `coefficients` is the folder that `boatsim hydrodynamics` writes, about the vessel's
-    origin of motion. The sea is that of `irregular_sea`: `spectrum`, `significant_height`,
-    `modal_period`, `toward` and the other parameters have the same meaning. Below the lowest
-    frequency of the table the excitation is that of the lowest one, above the highest it is zero.
+    the hull. D is the mean drift of a wave of unit amplitude in surge, sway and yaw, and `drift` is
+    the factor f on the mean and slowly varying drift: 1 for the whole drift, 0 for none. The double
+    sum is Newman's approximation. `coefficients` is the folder that `boatsim hydrodynamics` writes,
+    about the vessel's origin of motion. The sea is that of `irregular_sea`: `spectrum`,
+    `significant_height`, `modal_period`, `toward` and the other parameters have the same meaning.
+    Below the lowest frequency of the table excitation and drift are those of the lowest one; above
+    the highest the excitation is zero and the drift is that of the highest one.
     """
 
     formula: ClassVar[str] = (
         r"\begin{aligned} \tau_j &= \operatorname{Re} \sum_i a_i X_j(\omega_i, \gamma_i - \psi) "
-        r"\, e^{\mathrm{i} \theta_i}, \quad j = 1, \ldots, 6 \\ \theta_i &= \omega_i t - k_i \left("
+        r"\, e^{\mathrm{i} \theta_i} + f \sum_i \sum_k a_i a_k \tfrac{1}{2} \left(D_j(\omega_i, "
+        r"\gamma_i - \psi) + D_j(\omega_k, \gamma_k - \psi)\right) \cos(\theta_i - \theta_k), "
+        r"\quad j = 1, \ldots, 6 \\ \theta_i &= \omega_i t - k_i \left("
         r"(x - V_N t) \cos\gamma_i + (y - V_E t) \sin\gamma_i\right) + \epsilon_i, \quad "
         r"\omega_i^2 = g k_i \tanh k_i h \end{aligned}"
     )
-    symbols: ClassVar = {"toward": r"\gamma", "depth": "h"}
+    symbols: ClassVar = {"toward": r"\gamma", "depth": "h", "drift": "f"}
     ruled_out_by: ClassVar = {"no_waves": (True,), "no_water": (True,)}
     words: ClassVar[str] = "waves exert forces on the hull in all degrees of freedom"
     shown_by: ClassVar[str] = "lying at several headings to the sea"
     source: ClassVar[str] = (
         "J. N. Newman, Marine Hydrodynamics, 1977, section 6.18; "
-        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.2"
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.2; "
+        "drift: J. N. Newman, Second-order, slowly-varying forces on vessels in irregular waves, "
+        "Int. Symp. Dynamics of Marine Vehicles and Structures in Waves, London 1974"
     )
     sees_table: ClassVar[bool] = True
     paths: ClassVar = ("coefficients",)
@@ -100,8 +127,16 @@ class PanelWaveLoads(SeaParameters, Force):
         words="depth of the water, 0: deep water; default: that of the coefficients",
     )
 
+    drift: float = param(
+        0.0,
+        low=0.0,
+        high=10.0,
+        unit="",
+        words="factor on the mean and slowly varying drift; 1: as computed, 0: none",
+    )
+
     def table(self) -> tuple[float, ...]:
-        """Return the excitation on a grid of frequency and heading."""
+        """Return excitation and mean drift on a grid of frequency and heading."""
         if not self.coefficients:
             return EMPTY
         return excitation_grid(read_coefficients(self.coefficients), self.coefficients)
@@ -121,7 +156,8 @@ class PanelWaveLoads(SeaParameters, Force):
             vessel: Vessel on which the effect acts.
 
         Raises:
-            BadInput: No coefficients are given, or they hold for another depth of the water.
+            BadInput: No coefficients are given, they hold for another depth of the water, or they
+                lack the mean drift that the effect needs.
         """
         if not self.coefficients:
             raise BadInput(
@@ -129,11 +165,16 @@ class PanelWaveLoads(SeaParameters, Force):
                 "hydrodynamics writes"
             )
         own = super().with_all_parameters(vessel)
-        found = read_coefficients(own.coefficients).depth
-        if abs(own.depth - found) > DEPTHS * found:
+        found = read_coefficients(own.coefficients)
+        if abs(own.depth - found.depth) > DEPTHS * found.depth:
             raise BadInput(
                 f"{vessel.name}: {self.name}.depth = {own.depth:g} m; the coefficients hold for "
-                f"{found:g} m (0 is deep water)"
+                f"{found.depth:g} m (0 is deep water)"
+            )
+        if own.drift > 0.0 and found.drift is None:
+            raise BadInput(
+                f"{vessel.name}: {self.name}.drift = {own.drift:g}; {own.coefficients} has no "
+                "drift.csv, which boatsim hydrodynamics writes for a mesh"
             )
         own.table()  # a table that cannot be used is refused when the vessel is loaded
         return own

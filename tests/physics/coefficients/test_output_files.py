@@ -42,6 +42,18 @@ def write_wamit(folder: Path) -> Path:
                 )
                 polar = f"{abs(x):.9e} {np.degrees(np.angle(x)):.5f} {x.real:.9e} {x.imag:.9e}"
                 waves.append(f" {2 * np.pi / w:.9e} {-np.degrees(heading):.9f} {i + 1} {polar}")
+    assert found.drift is not None
+    drifts = []
+    for k, w in enumerate(found.frequency):
+        for h, heading in enumerate(found.heading):
+            direction = f"{-np.degrees(heading):.9f}"
+            for place, i in enumerate((0, 1, 5)):
+                x = found.drift[k, h, place] * SIGNS[i] / (DENSITY * 9.81 * LENGTH ** (1 + (i > 2)))
+                parts = f"{abs(x):.9e} 0.0 {x:.9e} 0.0"
+                drifts.append(f" {2 * np.pi / w:.9e} {direction} {direction} {i + 1} {parts}")
+            drifts.append(f" {2 * np.pi / w:.9e} {direction} {direction} -6 7.0 0.0 7.0 0.0")
+            drifts.append(f" {2 * np.pi / w:.9e} {direction} 77.0 1 7.0 0.0 7.0 0.0")
+    (folder / "hull.8").write_text("\n".join(drifts))
     (folder / "hull.1").write_text("\n".join(lines))
     (folder / "hull.3").write_text("\n".join(waves))
     return folder / "hull.1"
@@ -53,6 +65,9 @@ def test_written_coefficients_are_read_again(tmp_path: Path) -> None:
     again = read_coefficients(tmp_path / "copy")
     assert again.excitation == pytest.approx(found.excitation, rel=1e-8)
     assert again.damping == pytest.approx(found.damping, rel=1e-8)
+    assert again.drift is not None and found.drift is not None
+    assert again.drift == pytest.approx(found.drift, rel=1e-8)
+    assert again.drift_of == found.drift_of
     assert again.memory is not None and found.memory is not None
     assert again.memory.sections[0] == pytest.approx(found.memory.sections[0], rel=1e-12)
 
@@ -69,6 +84,44 @@ def test_output_of_wamit_is_converted(tmp_path: Path) -> None:
     assert found.heading == pytest.approx(exact.heading, abs=1e-6)
     size = np.abs(exact.excitation).max()
     assert np.abs(found.excitation - exact.excitation).max() < 1e-6 * size
+    assert found.drift is not None and exact.drift is not None
+    assert found.drift == pytest.approx(exact.drift, abs=1e-6 * np.abs(exact.drift).max())
+    assert found.drift_of == "motions of hull.8"
+
+
+def test_drift_by_the_pressure_is_read_if_there_is_none_by_the_momentum(tmp_path: Path) -> None:
+    path = write_wamit(tmp_path)
+    (tmp_path / "hull.8").rename(tmp_path / "hull.9")
+    scale = OutputScale(LENGTH, DENSITY, 0.0, 0.134)
+    assert read_wamit(path, scale).drift_of == "motions of hull.9"
+    (tmp_path / "hull.9").unlink()
+    assert read_wamit(path, scale).drift is None
+
+
+def test_incomplete_drift_of_wamit_is_refused(tmp_path: Path) -> None:
+    path = write_wamit(tmp_path)
+    lines = (tmp_path / "hull.8").read_text().splitlines()
+    (tmp_path / "hull.8").write_text("\n".join(lines[1:]))
+    scale = OutputScale(LENGTH, DENSITY, 0.0, 0.134)
+    with pytest.raises(BadInput, match="of every period and direction are required"):
+        read_wamit(path, scale)
+    (tmp_path / "hull.8").write_text(lines[0])
+    with pytest.raises(BadInput, match="the directions differ from those of the excitation"):
+        read_wamit(path, scale)
+
+
+def test_coefficients_without_drift_leave_none_of_earlier_ones(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", own())
+    write_coefficients(tmp_path / "copy", replace(own(), drift=None))
+    assert read_coefficients(tmp_path / "copy").drift is None
+
+
+def test_drift_of_other_waves_than_the_excitation_is_refused(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", own())
+    path = tmp_path / "copy" / "drift.csv"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-1]))
+    with pytest.raises(BadInput, match="must be those of excitation.csv"):
+        read_coefficients(tmp_path / "copy")
 
 
 @pytest.mark.parametrize("degrees", [False, True])

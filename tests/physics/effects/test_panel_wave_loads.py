@@ -1,5 +1,6 @@
-"""Excitation of waves from a table: values between its points, and long waves."""
+"""Excitation and drift of waves from a table: values between its points, and sums over waves."""
 
+from dataclasses import replace
 from math import pi
 from pathlib import Path
 
@@ -9,9 +10,13 @@ from scipy.interpolate import CubicSpline
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, make_motion
-from boatsim.physics.coefficients.files import read_coefficients
+from boatsim.physics.coefficients.excitation_grid import mean_drift_force
+from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
 from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
+from boatsim.simulate.batch import Batch
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.open_water import OpenWater
 
 OTTER = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
 
@@ -57,3 +62,113 @@ def test_sea_of_another_depth_is_refused() -> None:
     table = {"use": "panel_wave_loads", "coefficients": str(OTTER), "depth": 5.0}
     with pytest.raises(BadInput, match="the coefficients hold for 0 m"):
         load_vessel("otter").with_effect(table)
+
+
+def drift_alone(sea: PanelWaveLoads, t: float) -> Array:
+    """Drift of a sea: its wrench (6,) less that without drift, at a place away from the origin."""
+    m = make_motion(t=t, x=1.7, y=-0.6, psi=0.4)
+    return np.array(replace(sea, drift=1.0).wrench(m)) - np.array(replace(sea, drift=0.0).wrench(m))
+
+
+def test_drift_of_a_regular_wave_is_constant_and_that_of_the_table() -> None:
+    found = read_coefficients(OTTER)
+    assert found.drift is not None
+    own = PanelWaveLoads(
+        coefficients=str(OTTER),
+        spectrum="regular",
+        significant_height=0.6,
+        modal_period=2.0 * pi / float(found.frequency[-1]),
+        toward=float(found.heading[3]) + 0.4,
+        depth=0.0,
+    )
+    expected = np.zeros(6)
+    expected[[0, 1, 5]] = 0.3**2 * found.drift[-1, 3]
+    size = np.abs(expected).max()
+    for t in (0.0, 0.3, 5.1):
+        assert drift_alone(own, t) == pytest.approx(expected, abs=1e-6 * size)
+
+
+def sea_of_two_systems() -> PanelWaveLoads:
+    """A short-crested sea of few waves."""
+    return PanelWaveLoads(
+        coefficients=str(OTTER),
+        significant_height=0.3,
+        modal_period=1.6,
+        toward=1.1,
+        spreading=2.0,
+        components=12.0,
+        depth=0.0,
+    )
+
+
+def wave_drifts(sea: PanelWaveLoads) -> Array:
+    """Mean drift (N, 3) of each wave of a sea with unit amplitude, on a hull with yaw 0.4 rad."""
+    field = sea.wave_field()
+    assert field is not None
+    table, rows = np.array([*sea.table(), 0.0]), []
+    for w, direction in zip(field.frequency, field.direction, strict=True):
+        own = direction - 0.4
+        rows.append(mean_drift_force(w, np.cos(own), np.sin(own), table, np.int64(0)))
+    return np.array(rows)
+
+
+def test_drift_is_newmans_sum_over_pairs_of_waves() -> None:
+    sea = sea_of_two_systems()
+    field = sea.wave_field()
+    assert field is not None
+    single = wave_drifts(sea)
+    for t in (0.0, 4.3):
+        run = 1.7 * np.cos(field.direction) - 0.6 * np.sin(field.direction)
+        theta = field.frequency * t - field.wave_number * run + field.phase
+        expected = np.zeros(3)
+        for i in range(len(field)):
+            for k in range(len(field)):
+                pair = 0.5 * (single[i] + single[k]) * np.cos(theta[i] - theta[k])
+                expected += field.amplitude[i] * field.amplitude[k] * pair
+        found = drift_alone(sea, t)
+        assert found[[0, 1, 5]] == pytest.approx(expected, rel=1e-9)
+        assert not found[2:5].any()
+
+
+@pytest.mark.slow
+def test_mean_of_the_drift_is_the_sum_of_the_mean_drifts_of_all_waves() -> None:
+    sea = sea_of_two_systems()
+    field = sea.wave_field()
+    assert field is not None
+    times = np.arange(0.0, 4000.0, 0.4)
+    found = np.mean([drift_alone(sea, float(t))[[0, 1, 5]] for t in times], axis=0)
+    expected = field.amplitude**2 @ wave_drifts(sea)
+    assert found == pytest.approx(expected, rel=0.02)
+
+
+def test_drift_agrees_in_mujoco_compiled_engine_and_batch() -> None:
+    table = {
+        "use": "panel_wave_loads",
+        "coefficients": str(OTTER),
+        "significant_height": 0.3,
+        "modal_period": 1.6,
+        "toward": 1.2,
+        "components": 40.0,
+        "drift": 1.0,
+    }
+    vessel = load_vessel("otter").with_effect(table)
+    states = []
+    for kind in (OpenWater, Engine):
+        engine = kind(vessel, step=0.02)
+        engine.advance(200)
+        states.append(np.array(engine.state[1:]))
+    assert states[1] == pytest.approx(states[0], rel=1e-9, abs=1e-12)
+    batch = Batch(vessel, 2, step=0.02)
+    batch.advance(steps=200)
+    assert batch.states[1] == pytest.approx(states[0], rel=1e-9, abs=1e-12)
+    calm = OpenWater(load_vessel("otter").with_effect(table | {"drift": 0.0}), step=0.02)
+    calm.advance(200)
+    assert abs(calm.state.y - states[0][1]) > 1e-3  # the drift moves the vessel
+
+
+def test_drift_without_its_table_is_refused(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", replace(read_coefficients(OTTER), drift=None))
+    table = {"use": "panel_wave_loads", "coefficients": str(tmp_path / "copy"), "drift": 1.0}
+    with pytest.raises(BadInput, match="drift = 1; .* has no drift.csv"):
+        load_vessel("otter").with_effect(table)
+    load_vessel("otter").with_effect(table | {"drift": 0.0})
