@@ -23,7 +23,7 @@ from validation.owner_logs.commands import (
 from validation.owner_logs.formats import earth
 from validation.owner_logs.instruments import drive_names, record_voyage, sample_instruments
 from validation.owner_logs.judge import LIMITS, Result
-from validation.owner_logs.owner import correct_lines, correct_map
+from validation.owner_logs.owner import Line, correct_lines, correct_map
 from validation.owner_logs.pilot import pilot
 from validation.owner_logs.plant import (
     Plant,
@@ -234,6 +234,23 @@ def test_the_owner_puts_in_what_is_absent_and_turns_a_sign(tmp_path: Path) -> No
         f"absent {boat.helms[1]}",
     ]
     assert all(line.text in text.splitlines() for line in lines)
+
+
+def test_the_owner_who_corrects_full_scale_keeps_the_square_of_the_revolutions() -> None:
+    line = Line(
+        "thrust_N",
+        'thrust_N = { signal = "RPM", low = -5200, neutral = 0, high = 5200, '
+        "least = -400, most = 700 }",
+        "RPM",
+        -400.0,
+        700.0,
+        -5200.0,
+        5200.0,
+    )
+    proposed = line.text.replace("5200", "4288").replace(" }", ", exponent = 2 }")
+    text, edits = correct_map(proposed, [line])
+    assert edits == ["scale thrust_N"]
+    assert text == line.text.replace(" }", ", exponent = 2 }")
 
 
 def test_advice_goes_into_a_recording_toml_beside_what_is_there(tmp_path: Path) -> None:

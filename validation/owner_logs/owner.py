@@ -69,8 +69,18 @@ def correct_map(text: str, lines: list[Line]) -> tuple[str, list[str]]:
             continue
         if fault := _mistake_in_line(there[0], line):
             edits.append(f"{fault} {line.channel}")
-            text = text[: there.start()] + line.text + text[there.end() :]
+            text = text[: there.start()] + _corrected(there[0], line) + text[there.end() :]
     return text, edits
+
+
+def _corrected(proposed: str, line: Line) -> str:
+    """The owner's line, with the exponent of a proposed line: full scale does not contradict it."""
+    if proposed.startswith("#"):
+        return line.text
+    value = tomllib.loads(proposed)[line.channel]
+    if isinstance(value, str) or "exponent" not in value:
+        return line.text
+    return line.text.replace(" }", f", exponent = {value['exponent']:g} }}")
 
 
 def _mistake_in_line(proposed: str, line: Line) -> str:
