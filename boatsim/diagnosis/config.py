@@ -1068,10 +1068,10 @@ class ChecksConfig:
         0.2, "rad", "Smallest rotation of the heading that is compared; less is a compass error."
     )
     unexplained_max_share: float = setting(
-        0.3,
+        0.5,
         "1",
         "Unexplained force, relative to the force of the drives, from which reinterpretations "
-        "are compared. It only saves time, because a comparison accuses no good log.",
+        "are compared.",
     )
     unexplained_min_lever: float = setting(
         0.08,

@@ -587,7 +587,7 @@ class Problem:
         """Return the ratio of a candidate effect's parameter to its value on the reference hull.
 
         Quantities follow Froude's law. The force of a wind follows the area of the hull above the
-        water, because a wind is as strong for a small boat as for a large one. The threshold of a
+        water, because a wind is as fast for a small boat as for a large one. The threshold of a
         command scales with the largest command recorded, because the full thrust of the reference
         hull is 1 N. The drift of an instrument scales with its noise.
 
@@ -603,8 +603,8 @@ class Problem:
             largest = largest_command(self.recordings, effect, self.config.load)
             if largest:
                 return largest
-        if isinstance(effect, Force) and type(effect).of_air and unit == "N":
-            return priors.area_scale(self.program.vessel)
+        if isinstance(effect, Force) and type(effect).of_air and unit in ("N", "s/m"):
+            return priors.area_scale(self.program.vessel) if unit == "N" else 1.0
         return froude_scale(unit, self.program.vessel)
 
     def _bounds(self, param: Param) -> tuple[float, float]:
