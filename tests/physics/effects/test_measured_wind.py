@@ -100,6 +100,24 @@ def test_a_boat_at_rest_takes_it_as_a_fan_or_a_steady_wind(psi: float) -> None:
     assert MeasuredWind(**HULL).wrench(at, **read) == pytest.approx(steady.wrench(at))
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_steady_wind_of_known_speed_is_the_measured_one_on_a_boat_under_way(seed: int) -> None:
+    speed, toward, psi, u, v = (
+        np.random.default_rng(seed).uniform([2, -3, -3, -3, -1], [9, 3, 3, 3, 1]).tolist()
+    )
+    at = make_motion(psi=psi, u=u, v=v)
+    steady = Wind(
+        force=0.5 * AIR_DENSITY * speed**2 * HULL["side"],
+        toward=toward,
+        arm=HULL["arm"],
+        swing=HULL["swing"],
+        end_on=HULL["front"] / HULL["side"],
+        inverse_speed=1.0 / speed,
+    )
+    measured = MeasuredWind(**HULL).wrench(at, speed=speed, comes_from=toward - pi)
+    assert steady.wrench(at) == pytest.approx(measured)
+
+
 def test_no_wind_on_a_boat_that_drifts_with_it() -> None:
     drifting = make_motion(psi=0.0, u=-2.0 * cos(1.0), v=-2.0 * sin(1.0))
     assert MeasuredWind(**HULL).wrench(drifting, speed=2.0, comes_from=1.0) == pytest.approx(
