@@ -57,20 +57,26 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
 def closed_hull(x: Array, z: Array, half_breadth: Surface, centre: float = 0.0) -> Array:
     """Return the triangles (N, 3, 3) of a hull with a flat deck on its highest waterline.
 
-    The half-breadth is zero at the lowest waterline and at both ends, where the sides meet.
+    The hull and its triangles are symmetric to its centre plane and to its middle.
 
     Args:
-        x: Stations (N,) [m], increasing.
+        x: Stations of the forward half (N,) [m], increasing from 0.
         z: Waterlines (M,) [m], increasing, 0 at the surface; the last is the deck.
-        half_breadth: Half-breadth at places x and z.
+        half_breadth: Half-breadth at places x and z, 0 at the lowest waterline and at the end.
         centre: Place of the centre plane to port [m].
     """
     y = half_breadth(x, np.full_like(x, z[-1]))
-    port = np.column_stack([x, centre + y, np.full_like(x, z[-1])])
-    starboard = np.column_stack([x, centre - y, np.full_like(x, z[-1])])
-    a, b, c, d = starboard[:-1], starboard[1:], port[1:], port[:-1]
-    deck = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
-    return np.concatenate([shell(x, z, half_breadth, centre), deck])
+    top = np.full_like(x, z[-1])
+    middle = np.column_stack([x, np.full_like(x, centre), top])
+    halves = [shell(x, z, half_breadth, centre)]
+    for side in (1.0, -1.0):
+        edge = np.column_stack([x, centre + side * y, top])
+        a, b, c, d = middle[:-1], middle[1:], edge[1:], edge[:-1]
+        for corners in ((a, b, c), (a, c, d)):
+            halves.append(np.stack(corners[:: int(side)], axis=1))
+    forward = np.concatenate(halves)
+    aft = (forward * np.array([-1.0, 1.0, 1.0]))[:, ::-1]
+    return np.concatenate([forward, aft])
 
 
 def revolved(profile: Array, meridians: int) -> Array:
@@ -151,18 +157,18 @@ def write_obj(path: Path, triangles: Array, about: str) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
-def write_closed_catamaran(path: Path, stations: int = 10, lines: int = 2) -> None:
+def write_closed_catamaran(path: Path, stations: int = 5, lines: int = 2) -> None:
     """Write the closed mesh of a catamaran with the particulars of the Otter, with decks.
 
     The pontoons are as high above the waterline as below it, which is no published number.
 
     Args:
         path: The OBJ file.
-        stations: Number of panels along the hull.
-        lines: Number of panels over the draught, and as many above the waterline.
+        stations: Number of panels along each half of the hull.
+        lines: Number of panels over the draught; there is one above the waterline.
     """
     length, beam, draught, spacing = 2.0, 0.25, 0.134146341463, 0.79  # [m], of `models/otter`
-    x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, stations + 1))
+    x = 0.5 * length * np.sin(np.linspace(0.0, 0.5 * np.pi, stations + 1))
     z = np.append(np.linspace(-draught, 0.0, lines + 1), draught)
     half_breadth = pontoon_half_breadth(length, beam, draught)
     hulls = [closed_hull(x, z, half_breadth, side * 0.5 * spacing) for side in (1.0, -1.0)]

@@ -1,6 +1,6 @@
 """Equilibrium of a hull on still water: draught, trim, metacentric heights, righting arms."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from boatsim.physics.signals import Array
 
 # Relative accuracy of the immersion, and absolute one of the trim [rad]; both are those of rounding
 FINE = 1e-14
+ROUNDING = 1e-13  # lever over length that is zero but for rounding
 FIRST_TRIM, WIDER = 0.01, 2.0  # [rad] first change of the trim in search of a bracket, and factor
 MOST_TRIM = 1.5  # [rad] beyond which a hull stands on an end
 STEEPEST = np.radians(0.01)  # [rad] accuracy of the angle of vanishing stability
@@ -88,32 +89,42 @@ def righting_arm(hull: LoadedHull, heel: float, near: float = 0.0) -> RightingAr
     Args:
         hull: The hull.
         heel: Roll angle [rad].
-        near: Trim from which the search begins [rad].
+        near: Trim from which the search begins [rad]. The nearest equilibrium is found, also one
+            that a hull leaves when its trim is disturbed.
 
     Raises:
-        BadInput: There is no such equilibrium with a trim below 86 degrees.
+        BadInput: There is no equilibrium with a trim below 86 degrees.
     """
 
     def ahead(trim: float) -> float:
-        return _lever(hull, heel, trim)[1][0]
+        return float(_lever(hull, heel, trim)[1][0])
 
+    trim = near
     value = ahead(near)
-    low = high = near
-    step = FIRST_TRIM
-    # A centre of buoyancy that is too far ahead lifts the bow
-    while value != 0.0:
-        low, high = high, high + (step if value > 0.0 else -step)
-        if abs(high) > MOST_TRIM:
-            raise BadInput(
-                f"the hull has no equilibrium at a heel of {np.degrees(heel):.4g} deg: it would "
-                "stand on an end"
-            )
-        if ahead(high) * value <= 0.0:
-            break
-        step *= WIDER
-    trim = near if value == 0.0 else float(brentq(ahead, low, high, xtol=FINE, rtol=8.9e-16))
+    if abs(value) > ROUNDING * hull.mesh.length:
+        low, high = _bracket(ahead, near, value, heel)
+        trim = float(brentq(ahead, low, high, xtol=FINE, rtol=8.9e-16))
     part, lever, depth = _lever(hull, heel, trim)
     return RightingArm(heel, float(lever[1]), trim, depth, part)
+
+
+def _bracket(
+    ahead: Callable[[float], float], near: float, value: float, heel: float
+) -> tuple[float, float]:
+    """Return two trims between which a lever changes its sign. Raises BadInput without them."""
+    before, step = 0.0, FIRST_TRIM
+    # A centre of buoyancy that is too far ahead lifts the bow of a hull with a stable trim
+    stable = 1.0 if value > 0.0 else -1.0
+    while step < 2.0 * MOST_TRIM:
+        for side in (stable, -stable):
+            other = near + side * step
+            if abs(other) < MOST_TRIM and ahead(other) * value <= 0.0:
+                return near + side * before, other
+        before, step = step, step * WIDER
+    raise BadInput(
+        f"the hull has no equilibrium at a heel of {np.degrees(heel):.4g} deg: it would stand on an "
+        "end"
+    )
 
 
 def _lever(hull: LoadedHull, heel: float, trim: float) -> tuple[Submerged, Array, float]:
