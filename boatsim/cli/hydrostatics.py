@@ -185,8 +185,8 @@ def _buoyancy_of(name: str, vessel: Vessel) -> HullBuoyancy:
         if isinstance(effect, HullBuoyancy):
             return effect
     raise BadInput(
-        f"{name}: the vessel has no hull_buoyancy, whose mesh is needed; give a mesh with --mass or "
-        "--draught"
+        f"{name}: the vessel has no hull_buoyancy, whose mesh is needed; give a mesh with --mass "
+        "or --draught"
     )
 
 

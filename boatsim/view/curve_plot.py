@@ -1,4 +1,4 @@
-"""Plot of one curve as an SVG file of its own."""
+"""Plot of one curve as a separate SVG file."""
 
 from html import escape
 
@@ -39,7 +39,8 @@ def curve_plot(title: str, labels: tuple[str, str], x: Array, y: Array) -> str:
         f'width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif" font-size="13">',
         f"<title>{escape(title)}</title>",
         '<rect width="100%" height="100%" fill="#ffffff"/>',
-        f'<text x="{WIDTH / 2:g}" y="26" text-anchor="middle" font-size="16">{escape(title)}</text>',
+        f'<text x="{WIDTH / 2:g}" y="26" text-anchor="middle" font-size="16">'
+        f"{escape(title)}</text>",
     ]
     for tick in round_ticks(x_low, x_high, TICKS):
         at = place_x(tick)

@@ -218,7 +218,9 @@ class HullBuoyancy(SeaParameters, Force):
                 effect exerts buoyancy.
         """
         if not self.mesh:
-            raise BadInput(f"{vessel.name}: {self.name} needs mesh = an STL or OBJ file of the hull")
+            raise BadInput(
+                f"{vessel.name}: {self.name} needs mesh = an STL or OBJ file of the hull"
+            )
         if "heave" not in vessel.dof:
             raise BadInput(f"{vessel.name}: {self.name} needs a vessel that is free to heave")
         for owner, key in OTHERS:

@@ -54,9 +54,7 @@ class RightingArm:
     submerged: Submerged
 
 
-def depth_of_volume(
-    mesh: ClosedMesh, volume: float, heel: float = 0.0, trim: float = 0.0
-) -> float:
+def depth_of_volume(mesh: ClosedMesh, volume: float, heel: float = 0.0, trim: float = 0.0) -> float:
     """Return the depth of the origin of a mesh at which it displaces a volume [m].
 
     Args:
@@ -122,8 +120,8 @@ def _bracket(
                 return near + side * before, other
         before, step = step, step * WIDER
     raise BadInput(
-        f"the hull has no equilibrium at a heel of {np.degrees(heel):.4g} deg: it would stand on an "
-        "end"
+        f"the hull has no equilibrium at a heel of {np.degrees(heel):.4g} deg: it would stand on "
+        "an end"
     )
 
 

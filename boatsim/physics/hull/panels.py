@@ -20,7 +20,9 @@ from boatsim.physics.waves.field import WaveField
 HEAD, WAVE, CELL, TRIANGLE = 2, 7, 5, 9  # numbers of the table of each
 # Longest edge of a triangle over the edge of a cell: triangles of a cell may reach beyond it
 LONGEST_EDGE = 1.5
-ROUNDED = 9  # decimals of the place of a triangle in cells, so that a mirrored mesh has mirrored cells
+ROUNDED = (
+    9  # decimals of the place of a triangle in cells, so that a mirrored mesh has mirrored cells
+)
 CALM = (0.0, 0.0)  # the table without a mesh
 
 
@@ -90,7 +92,9 @@ def panel_numbers(corners: Array, edge: float, before: int) -> list[float]:
     return cells + corners[order].ravel().tolist()
 
 
-def panel_table(corners: Array, edge: float, field: WaveField | None, depth: float) -> Sequence[float]:
+def panel_table(
+    corners: Array, edge: float, field: WaveField | None, depth: float
+) -> Sequence[float]:
     """Return the table of a hull and of the waves around it.
 
     Without waves the hull is one cell with the triangles of its mesh.
@@ -155,7 +159,9 @@ class HeadMoments(NamedTuple):
 
 
 @njit
-def wave_head(north: float, east: float, below: float, t: float, p: Array, first: Any) -> PressureHead:
+def wave_head(
+    north: float, east: float, below: float, t: float, p: Array, first: Any
+) -> PressureHead:
     """Return the pressure head of waves at a place, and its gradient north, east and down.
 
     Below the level of the still water it is that of linear waves, and above that of the surface, so
@@ -266,9 +272,7 @@ def wetted_moments(a: Corner, b: Corner, c: Corner) -> HeadMoments:
         return tip
     # The head of a dry tip is negative
     whole = whole_moments(a, b, c)
-    return HeadMoments(
-        whole.x - tip.x, whole.y - tip.y, whole.z - tip.z, whole.mean - tip.mean
-    )
+    return HeadMoments(whole.x - tip.x, whole.y - tip.y, whole.z - tip.z, whole.mean - tip.mean)
 
 
 @njit

@@ -40,7 +40,7 @@ class Submerged:
 
 
 def attitude(heel: float, trim: float) -> Array:
-    """Return the rotation (3, 3) from the axes of a hull to level axes, of its own heading.
+    """Return the rotation (3, 3) from the axes of a hull to level axes of the same heading.
 
     Args:
         heel: Roll angle [rad], starboard down.
