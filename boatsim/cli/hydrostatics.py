@@ -88,9 +88,9 @@ def write_hydrostatics(name: str, options: HydrostaticsOptions) -> int:
         rows.append(
             [
                 f"{degrees(one.heel):.4g}",
-                f"{one.arm:.5f}",
-                f"{degrees(one.trim):.3f}",
-                f"{_draught(hull.mesh, one):.5f}",
+                _decimals(one.arm, 5),
+                _decimals(degrees(one.trim), 3),
+                _decimals(_draught(hull.mesh, one), 5),
             ]
         )
     print_text_table(
@@ -208,22 +208,28 @@ def _draught(mesh: ClosedMesh, at: RightingArm) -> float:
     return float((mesh.points @ at.submerged.rotation[2]).max()) + at.depth
 
 
+def _decimals(value: float, number: int) -> str:
+    """Return a value with a number of decimals, without the sign of a zero."""
+    return f"{round(value, number) + 0.0:.{number}f}"
+
+
 def _rest_lines(hull: LoadedHull, density: float, rest: RightingArm) -> list[str]:
     """Lines on the hull at rest without heel."""
     mesh, part = hull.mesh, rest.submerged
     lowest = float(mesh.points[:, 2].max())
     across, along = metacentric_heights(hull, part)
     buoyancy, flotation = part.body_centre, part.flotation
+    trim = _decimals(degrees(rest.trim), 3)
     return [
         f"{len(mesh.faces)} triangles, length {mesh.length:.4g} m, beam {mesh.beam:.4g} m, height "
         f"{mesh.height:.4g} m, encloses {mesh.volume:.6g} m^3",
         f"displacement {hull.volume * density:.6g} kg, {hull.volume:.6g} m^3 of {density:g} kg/m^3",
-        f"draught {_draught(mesh, rest):.5g} m, trim {degrees(rest.trim):.3f} deg, bow up",
-        f"centre of buoyancy {buoyancy[0]:.4f} m ahead, {lowest - buoyancy[2]:.4f} m above the "
+        f"draught {_draught(mesh, rest):.5g} m, trim {trim} deg, bow up",
+        f"centre of buoyancy {_decimals(buoyancy[0], 4)} m ahead, {lowest - buoyancy[2]:.4f} m above the "
         "lowest point",
-        f"mass centre {hull.centre[0]:.4f} m ahead, {lowest - hull.centre[2]:.4f} m above the "
+        f"mass centre {_decimals(hull.centre[0], 4)} m ahead, {lowest - hull.centre[2]:.4f} m above the "
         "lowest point",
-        f"waterplane {part.area:.6g} m^2, centre of flotation {flotation[0]:.4f} m ahead",
+        f"waterplane {part.area:.6g} m^2, centre of flotation {_decimals(flotation[0], 4)} m ahead",
         f"GM {across:.4f} m transverse, {along:.4f} m longitudinal",
     ]
 
