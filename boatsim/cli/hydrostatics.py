@@ -220,16 +220,16 @@ def _rest_lines(hull: LoadedHull, density: float, rest: RightingArm) -> list[str
     across, along = metacentric_heights(hull, part)
     buoyancy, flotation = part.body_centre, part.flotation
     trim = _decimals(degrees(rest.trim), 3)
+    ahead = [_decimals(float(x), 4) for x in (buoyancy[0], hull.centre[0], flotation[0])]
     return [
         f"{len(mesh.faces)} triangles, length {mesh.length:.4g} m, beam {mesh.beam:.4g} m, height "
         f"{mesh.height:.4g} m, encloses {mesh.volume:.6g} m^3",
         f"displacement {hull.volume * density:.6g} kg, {hull.volume:.6g} m^3 of {density:g} kg/m^3",
         f"draught {_draught(mesh, rest):.5g} m, trim {trim} deg, bow up",
-        f"centre of buoyancy {_decimals(buoyancy[0], 4)} m ahead, {lowest - buoyancy[2]:.4f} m above the "
+        f"centre of buoyancy {ahead[0]} m ahead, {lowest - buoyancy[2]:.4f} m above the "
         "lowest point",
-        f"mass centre {_decimals(hull.centre[0], 4)} m ahead, {lowest - hull.centre[2]:.4f} m above the "
-        "lowest point",
-        f"waterplane {part.area:.6g} m^2, centre of flotation {_decimals(flotation[0], 4)} m ahead",
+        f"mass centre {ahead[1]} m ahead, {lowest - hull.centre[2]:.4f} m above the lowest point",
+        f"waterplane {part.area:.6g} m^2, centre of flotation {ahead[2]} m ahead",
         f"GM {across:.4f} m transverse, {along:.4f} m longitudinal",
     ]
 

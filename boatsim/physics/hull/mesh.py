@@ -18,6 +18,7 @@ KINDS = (".stl", ".obj")
 # all triangles around it, often rounded to single precision, whose relative error is 6e-8
 SAME_POINT = 1e-6
 MOST_TRIANGLES = 200_000  # of a file; a submerged part of this many takes some 0.1 s
+MOST_BYTES = 100_000_000  # of a file; text of that many triangles has some 60 MB
 STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
 ALLOWED = "allowed are closed surfaces of triangles in .stl or .obj files"
 
@@ -86,6 +87,9 @@ def read_closed_mesh(path: Path, scale: float = 1.0) -> ClosedMesh:
         raise BadInput(f"{path}: {ALLOWED}")
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise BadInput(f"{path}: {size} bytes; allowed are {MOST_BYTES}")
     try:
         corners = _stl_corners(path) if path.suffix.lower() == ".stl" else _obj_corners(path)
     except (ValueError, IndexError, UnicodeDecodeError) as error:

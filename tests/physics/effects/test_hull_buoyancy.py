@@ -129,19 +129,26 @@ def total_energy(vessel: Vessel, state: Any) -> float:
     return float(kinetic + energy(own, state.z, state.phi, state.theta))
 
 
-def test_released_boat_without_damping_keeps_its_energy() -> None:
+@pytest.mark.parametrize(
+    ("heel", "trim", "most"), [(0.1, 0.05, 1e-6), (0.3, 0.0, 1e-5), (1.0, 0.1, 1e-5)]
+)
+def test_released_boat_without_damping_keeps_its_energy(
+    heel: float, trim: float, most: float
+) -> None:
+    """Over 10 s the change of the energy decreases with the step, to 1e-6 or 1e-5 at 5 ms."""
     vessel = undamped()
     at_rest = energy(buoyancy(vessel), 0.0, 0.0, 0.0)
     changes = []
-    for step in (0.02, 0.01):
+    for step in (0.02, 0.005):
         engine = OpenWater(vessel, step=step)
-        engine.reset(State(phi=1.0, theta=0.1, z=0.02))
+        engine.reset(State(phi=heel, theta=trim, z=0.02))
         energies = [total_energy(vessel, engine.state) - at_rest]
         for _ in range(20):
             engine.advance(round(0.5 / step))
             energies.append(total_energy(vessel, engine.state) - at_rest)
         changes.append(np.ptp(energies) / energies[0])
-    assert changes[1] < changes[0] < 1e-3
+    assert changes[1] < most
+    assert changes[1] < 0.1 * changes[0]
 
 
 @pytest.mark.parametrize(("heel", "end"), [(1.0, 0.0), (-2.1, -pi), (2.1, pi)])
