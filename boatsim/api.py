@@ -717,8 +717,8 @@ def wave_field(scenario: Name | Scenario, seed: int | None = None) -> WaveField:
 
     They are the waves that exert the forces in a run with this seed, and whose elevation at the
     vessel is the column `wave_elevation_m` of its recording. Waves of `irregular_sea`,
-    `strip_wave_loads` and `panel_wave_loads` have an elevation; `wave_forcing` and `filtered_sea`
-    are forces alone.
+    `strip_wave_loads`, `panel_wave_loads` and `hull_buoyancy` have an elevation; `wave_forcing` and
+    `filtered_sea` are forces alone.
 
     Args:
         scenario: Name or file of a scenario, or a `Scenario`.

@@ -58,7 +58,7 @@ COMMAND_GROUPS = {
     ),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
-    "Vessels and content": ("new", "hydrodynamics", "list", "show"),
+    "Vessels and content": ("new", "hydrostatics", "hydrodynamics", "list", "show"),
 }
 
 
@@ -794,6 +794,90 @@ def manoeuvre(
             if value is not None:
                 words += [option, f"{value:g}"]
         return run_manoeuvre(scenario, folder, shlex.join(words))
+
+
+@app.command()
+@exits_with_code
+def hydrostatics(
+    hull: Annotated[
+        str,
+        typer.Argument(
+            metavar="HULL",
+            help="Closed mesh (.stl, .obj; z up, x forward), or a vessel or scenario with the "
+            "effect hull_buoyancy.",
+        ),
+    ],
+    mass: Annotated[
+        float | None,
+        typer.Option(min=1e-6, max=1e12, metavar="KG", help="Mass [kg] [default: the vessel's]."),
+    ] = None,
+    draught: Annotated[
+        float | None,
+        typer.Option(
+            min=1e-6, max=100.0, metavar="M", help="Draught of the level hull, instead of --mass."
+        ),
+    ] = None,
+    centre_depth: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="Depth of the mass centre below the waterline [m] [default: 0]."
+        ),
+    ] = None,
+    centre_ahead: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X",
+            help="Place of the mass centre along x of the mesh [m] [default: that of buoyancy].",
+        ),
+    ] = None,
+    density: Annotated[
+        float | None,
+        typer.Option(
+            min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3] [default: 1025]."
+        ),
+    ] = None,
+    scale: Annotated[
+        float | None,
+        typer.Option(min=1e-6, max=1e6, metavar="M", help="Unit of the mesh [m] [default: 1]."),
+    ] = None,
+    heel: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DEG,...", help="Heel angles [default: 0 to 180 in steps of 10 degrees]."
+        ),
+    ] = None,
+    load: Load = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            parser=_parse_folder,
+            help="Output folder [default: out/HULL_hydrostatics].",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Print displacement, centres, GM and the righting-arm curve of a hull from its mesh.
+
+    Sinkage and trim are free at each heel. It writes righting_arm.csv and righting_arm.svg. A mesh
+    needs --mass or --draught.
+    """
+    from boatsim.cli.hydrostatics import HEELS, HydrostaticsOptions, write_hydrostatics
+
+    with trusted_content(content, trust, [hull]):
+        options = HydrostaticsOptions(
+            mass=mass,
+            draught=draught,
+            centre_depth=centre_depth,
+            centre_ahead=centre_ahead,
+            density=density,
+            scale=scale,
+            heels=heel or HEELS,
+            loads=_split_loads(load),
+            out=out or Path("out") / f"{Path(hull).stem}_hydrostatics",
+        )
+        return write_hydrostatics(hull, options)
 
 
 @app.command()

@@ -12,7 +12,7 @@ from boatsim.physics.kinds.force import Force
 from boatsim.physics.vessel import Vessel
 
 LEVEL = {"heave", "roll", "pitch"}  # degrees of freedom without which a hull stays level
-SEAS = ("irregular_sea", "strip_wave_loads", "panel_wave_loads")
+SEAS = ("irregular_sea", "strip_wave_loads", "panel_wave_loads", "hull_buoyancy")
 Settings = dict[str, dict[str, float]]  # name of an effect -> parameter -> value
 EffectTable = dict[str, Value]
 

@@ -124,6 +124,8 @@ def _heading_of(effect: Effect) -> str:
     for heading, names in ENVIRONMENT.items():
         if type(effect).type_name() in names:
             return heading
+    if effect.wave_field() is not None:  # such as buoyancy, which also acts on still water
+        return "Waves"
     return ""
 
 

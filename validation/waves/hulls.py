@@ -54,6 +54,31 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
     return np.concatenate(found)
 
 
+def closed_hull(x: Array, z: Array, half_breadth: Surface, centre: float = 0.0) -> Array:
+    """Return the triangles (N, 3, 3) of a hull with a flat deck on its highest waterline.
+
+    The hull and its triangles are symmetric to its centre plane and to its middle.
+
+    Args:
+        x: Stations of the forward half (N,) [m], increasing from 0.
+        z: Waterlines (M,) [m], increasing, 0 at the surface; the last is the deck.
+        half_breadth: Half-breadth at places x and z, 0 at the lowest waterline and at the end.
+        centre: Place of the centre plane to port [m].
+    """
+    y = half_breadth(x, np.full_like(x, z[-1]))
+    top = np.full_like(x, z[-1])
+    middle = np.column_stack([x, np.full_like(x, centre), top])
+    halves = [shell(x, z, half_breadth, centre)]
+    for side in (1.0, -1.0):
+        edge = np.column_stack([x, centre + side * y, top])
+        a, b, c, d = middle[:-1], middle[1:], edge[1:], edge[:-1]
+        for corners in ((a, b, c), (a, c, d)):
+            halves.append(np.stack(corners[:: int(side)], axis=1))
+    forward = np.concatenate(halves)
+    aft = (forward * np.array([-1.0, 1.0, 1.0]))[:, ::-1]
+    return np.concatenate([forward, aft])
+
+
 def revolved(profile: Array, meridians: int) -> Array:
     """Return the triangles (N, 3, 3) of a surface of revolution about the vertical axis.
 
@@ -112,6 +137,43 @@ def write_catamaran(path: Path, stations: int = 18, lines: int = 4) -> None:
     half_breadth = pontoon_half_breadth(length, beam, draught)
     hulls = [shell(x, z, half_breadth, side * 0.5 * spacing) for side in (1.0, -1.0)]
     write_stl(path, np.concatenate(hulls))
+
+
+def write_obj(path: Path, triangles: Array, about: str) -> None:
+    """Write triangles to an OBJ file; those without area are left out.
+
+    Args:
+        path: The file.
+        triangles: Corners (N, 3, 3) [m], counter-clockwise seen from the water.
+        about: First line of the file.
+    """
+    rounded = np.round(triangles, 6) + 0.0
+    points, place = np.unique(rounded.reshape(-1, 3), axis=0, return_inverse=True)
+    lines = [f"# {about}"]
+    lines += ["v {:.6f} {:.6f} {:.6f}".format(*point) for point in points]
+    for a, b, c in place.reshape(-1, 3) + 1:
+        if len({a, b, c}) == 3:
+            lines.append(f"f {a} {b} {c}")
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def write_closed_catamaran(path: Path, stations: int = 5, lines: int = 2) -> None:
+    """Write the closed mesh of a catamaran with the particulars of the Otter, with decks.
+
+    The pontoons are as high above the waterline as below it, which is no published number.
+
+    Args:
+        path: The OBJ file.
+        stations: Number of panels along each half of the hull.
+        lines: Number of panels over the draught; there is one above the waterline.
+    """
+    length, beam, draught, spacing = 2.0, 0.25, 0.134146341463, 0.79  # [m], of `models/otter`
+    x = 0.5 * length * np.sin(np.linspace(0.0, 0.5 * np.pi, stations + 1))
+    z = np.append(np.linspace(-draught, 0.0, lines + 1), draught)
+    half_breadth = pontoon_half_breadth(length, beam, draught)
+    hulls = [closed_hull(x, z, half_breadth, side * 0.5 * spacing) for side in (1.0, -1.0)]
+    about = "two pontoons of the Otter, z = 0 at the waterline: validation.waves.hulls"
+    write_obj(path, np.concatenate(hulls), about)
 
 
 def write_section(path: Path, section: "Section", length: float, along: int) -> None:

@@ -407,6 +407,10 @@ class Boat(Protocol):
         """Draught of the vessel [m]."""
 
     @property
+    def dof(self) -> Sequence[str]:
+        """Degrees of freedom of the vessel, of `AXES`."""
+
+    @property
     def body(self) -> RigidBody:
         """Rigid body of the vessel: its mass and moments of inertia."""
 

@@ -22,6 +22,7 @@ class ChannelBindings:
 
     Attributes:
         name: Name of the vessel.
+        dof: Degrees of freedom, of "surge", "sway", "heave", "roll", "pitch" and "yaw".
         length: Length [m].
         beam: Beam [m].
         draught: Draught [m].
@@ -32,6 +33,7 @@ class ChannelBindings:
     """
 
     name: str
+    dof: tuple[str, ...]
     length: float
     beam: float
     draught: float

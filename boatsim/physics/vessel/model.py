@@ -104,7 +104,6 @@ class Vessel(ChannelBindings):
         source: Source of the numbers.
         hull: File name of the hull's MJCF in `path`.
         hull_xml: MJCF text used in place of that file; "" for a vessel from a file.
-        dof: Degrees of freedom, of "surge", "sway", "heave", "roll", "pitch" and "yaw".
         geometry: Numbers for the drawing of the hull [m], [kg].
         load: Load conditions in force.
         loads: Names of all load conditions of the file.
@@ -126,7 +125,6 @@ class Vessel(ChannelBindings):
     source: str
     hull: str = "hull.xml"
     hull_xml: str = ""
-    dof: tuple[str, ...]
     geometry: dict[str, float]
     load: tuple[str, ...] = ()
     loads: tuple[str, ...] = ()

@@ -133,7 +133,8 @@ RESTS = {  # effects that are not always there
     "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
-COEFFICIENTS = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
+OTTER = Path(__file__).parents[3] / "models" / "otter"
+COEFFICIENTS, MESH = OTTER / "hydrodynamics", OTTER / "hull.obj"
 
 
 def drawn(kind: type[Effect], seed: int) -> Any:
@@ -153,6 +154,8 @@ def drawn(kind: type[Effect], seed: int) -> Any:
     if "coefficients" in kind.paths:
         values["coefficients"] = str(COEFFICIENTS)
         values.pop("modal_period", None)  # waves shorter than those of the table exert no force
+    if "mesh" in kind.paths:
+        values |= {"mesh": str(MESH), "scale": 1.0, "draught": 0.13, "cell": 0.2}
     if kind.type_name() == "radiation_memory":  # a mass matrix is positive definite
         least = min(values[axis] for axis in AXES)
         for name in set(MassMatrix._fields) - set(AXES):
