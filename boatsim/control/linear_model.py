@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name_message
-from boatsim.physics.base import Array
+from boatsim.physics.signals import AXES, Array
 
 if TYPE_CHECKING:
     from scipy.signal import StateSpace
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FORMAT = "boatsim linear model 1"
 SUFFIXES = (".json", ".npz")
 # Participation of a degree of freedom in a mode from which the name of the mode contains it
-NAMED_SHARE = 0.15
+NAMED_SHARE = 0.1
 # Relative to scaled matrices of size 1: directions below it count as not controllable or not
 # observable. Derivatives are exact to about 1e-8.
 RANK_TOLERANCE = 1e-7
@@ -125,8 +125,8 @@ class LinearModel:
         e: E, (n, number of forces).
         delay: Dead time of all commands, which is not part of the matrices [s].
         dt: Sample time of a discrete model [s]; 0 for a continuous one.
-        accuracy: Largest change of the scaled matrices of the continuous model, relative to their
-            largest entry, when the differences and the time interval are halved.
+        accuracy: Largest relative change of the frequency response of the motion when the
+            differences and the time interval of the linearisation are halved.
         remarks: What the model leaves out.
     """
 
@@ -505,7 +505,10 @@ def _mode_name(shares: Array, groups: Sequence[str]) -> str:
     total: dict[str, float] = {}
     for group, share in zip(groups, shares.tolist(), strict=True):
         total[group] = total.get(group, 0.0) + share
-    named = [group for group, share in total.items() if share >= NAMED_SHARE]
+    named = [axis for axis in AXES if total.get(axis, 0.0) >= NAMED_SHARE]
+    for group, share in total.items():
+        if group not in AXES and share >= NAMED_SHARE:
+            named.append(group)
     if not named:
         named = [max(total, key=lambda group: total[group])]
     return "-".join(named)

@@ -9,8 +9,10 @@ import numpy as np
 
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
-from boatsim.physics.kinds.channel import ChannelEffect
-from boatsim.physics.signals import Array
+from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
+from boatsim.physics.kinds.filtered import FilteredSignal
+from boatsim.physics.kinds.motion_memory import MotionMemory
+from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.stepper import State
@@ -70,7 +72,7 @@ class IntervalMap:
     @property
     def force_axes(self) -> list[str]:
         """Names of the degrees of freedom in which a further body force can act."""
-        return [axis for axis in self.vessel.dof]
+        return [axis for axis in AXES if axis in self.vessel.dof]
 
     def settled_state(self, start: State, commands: Mapping[str, float]) -> Array:
         """Return the state (n,) with actuators settled at their commands.
@@ -123,18 +125,24 @@ class IntervalMap:
         size = len(self._memory)
         names, actuators = [""] * size, [""] * size
         for number, effect in enumerate(program.effects):
-            if not isinstance(effect, ChannelEffect) or not type(effect).slots:
+            if isinstance(effect, ChannelEffect):
+                slots = type(effect).slots
+                for actuator in program.target_actuators(number) if slots else ():
+                    at = program.memory_offset(number, actuator)
+                    for k in range(slots):
+                        place = f".{k + 1}" if slots > 1 else ""
+                        names[at + k] = f"{effect.name}.{actuator}{place}"
+                        actuators[at + k] = actuator
                 continue
-            slots = type(effect).slots
-            for actuator in program.target_actuators(number):
-                at = program.memory_offset(number, actuator)
-                for k in range(slots):
-                    place = f".{k + 1}" if slots > 1 else ""
-                    names[at + k] = f"{effect.name}.{actuator}{place}"
-                    actuators[at + k] = actuator
-        for i in range(program.memory_size):
-            if not names[i]:
-                names[i] = f"memory.{i + 1}"
+            if isinstance(effect, MotionMemory):
+                slots = effect.memory_states
+            elif isinstance(effect, FilteredSignal):
+                slots = type(effect).filter_states
+            else:
+                continue
+            at = program.memory_offset(number, WHOLE)
+            for k in range(slots):
+                names[at + k] = f"{effect.name}.{k + 1}"
         return names, actuators
 
 

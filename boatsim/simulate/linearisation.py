@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
+from boatsim.control.adaptive import Complex
 from boatsim.control.linear_model import LinearModel, Variable
 from boatsim.errors import BadInput
 from boatsim.physics.particulars import GRAVITY
@@ -30,6 +32,10 @@ IMMEDIATE = 1e-5
 # Entries of the scaled matrices below this are errors of the differences and are set to zero: they
 # mean time constants of years for a boat of 1 m
 ROUNDING = 1e-8
+# Factor by which poses and velocities are preferred to the memory of effects as states
+PREFERENCE = 1e4
+# [rad/s sqrt(g / L)] at which two models are compared, from drift to actuators
+FREQUENCIES = np.geomspace(0.01, 30.0, 15)
 # Relative difference of the derivatives to both sides from which a law has a kink at the motion
 KINK = 0.02
 
@@ -94,7 +100,11 @@ def _derivatives(
     commands, n = steady.commands, len(motion)
     offset = np.zeros(n)
     if len(steady.memory):
-        offset[len(motion.fields) :] = steady.memory
+        own = slice(len(motion.fields), n)
+        offset[own] = steady.memory
+        # the memory of the motion contains the length of the last step
+        begin = motion.settled_state(start, commands) + offset
+        offset[own] += (motion.advance(start, offset, commands) - begin)[own]
     middle = motion.advance(start, offset, commands)
     kinks = []
 
@@ -177,24 +187,38 @@ def linear_model(
     length = INTERVAL * sqrt(vessel.length / GRAVITY)
     first = _continuous_model(vessel, steady, length, 1.0, position)
     model = _continuous_model(vessel, steady, 0.5 * length, 0.5, position)
-    accuracy = 1.0
-    if [one.name for one in first.states] == [one.name for one in model.states]:
-        differences, largest = [0.0], [1e-300]
-        for old, new in zip(_scaled_matrices(first), _scaled_matrices(model), strict=True):
-            differences.append(np.abs(new - old).max(initial=0.0))
-            largest.append(np.abs(new).max(initial=0.0))
-        accuracy = max(differences) / max(largest)
+    accuracy = _response_difference(first, model, sqrt(vessel.length / GRAVITY))
     found = LinearModel(**{**vars(model), "accuracy": accuracy})
     if not outputs:
         outputs = [one.name for one in found.states if one.name in State._fields]
     return found.with_outputs(outputs)
 
 
-def _scaled_matrices(model: LinearModel) -> tuple[Array, Array]:
-    """A and B in units of the scales."""
+def _response_difference(first: LinearModel, second: LinearModel, unit: float) -> float:
+    """Largest relative difference of two frequency responses from all inputs to the motion.
+
+    The response does not depend on the choice of the states, as the matrices do.
+
+    Args:
+        first: A model.
+        second: Another model of the same vessel.
+        unit: Unit of time sqrt(L / g) [s].
+    """
+    largest = 0.0
+    for frequency in (FREQUENCIES / unit).tolist():
+        old, new = _motion_response(first, frequency), _motion_response(second, frequency)
+        largest = max(largest, np.abs(new - old).max() / (np.abs(new).max() or 1.0))
+    return float(largest)
+
+
+def _motion_response(model: LinearModel, frequency: float) -> Complex:
+    """Response (motions, inputs and forces) at a frequency [rad/s], in units of the scales."""
     x = np.array([one.scale for one in model.states])
-    u = np.array([one.scale for one in model.inputs])
-    return model.a * x / x[:, None], model.b * u / x[:, None]
+    u = np.array([one.scale for one in (*model.inputs, *model.forces)])
+    pencil = 1j * frequency * np.eye(len(x)) - model.a * x / x[:, None]
+    inputs = np.hstack((model.b, model.e)) * u / x[:, None]
+    rows = [i for i, one in enumerate(model.states) if one.name in State._fields]
+    return np.asarray(np.linalg.solve(pencil, inputs)[rows])
 
 
 def _continuous_model(
@@ -220,7 +244,8 @@ def _continuous_model(
                 unused.append(i)
     kept = np.setdiff1d(np.arange(len(variables)), unused)
     both = np.hstack((b, e))[kept]
-    chosen, a, both = _without_immediate_states(a[np.ix_(kept, kept)], both)
+    moving = kept < len(motion.fields)
+    chosen, a, both = _without_immediate_states(a[np.ix_(kept, kept)], both, moving)
     a, both = _logarithm(a, both, length)
     states = [variables[kept[i]] for i in chosen]
     scale = scale[kept][chosen]
@@ -255,7 +280,9 @@ def _continuous_model(
     )
 
 
-def _without_immediate_states(a: Array, b: Array) -> tuple[Array, Array, Array]:
+def _without_immediate_states(
+    a: Array, b: Array, moving: NDArray[np.bool_]
+) -> tuple[Array, Array, Array]:
     """Remove the modes of a sampled model that decay within the interval.
 
     They belong to actuators without lag, which only store the last command. The remaining states
@@ -264,6 +291,7 @@ def _without_immediate_states(a: Array, b: Array) -> tuple[Array, Array, Array]:
     Args:
         a: Sampled A, (n, n).
         b: Sampled B, (n, m).
+        moving: Whether a state (n,) is a pose or velocity, which is kept if possible.
 
     Returns:
         Indices of the remaining states (k,), A (k, k) and B (k, m) for them.
@@ -280,9 +308,10 @@ def _without_immediate_states(a: Array, b: Array) -> tuple[Array, Array, Array]:
     right = z[:, :count]
     mixed = solve_sylvester(t[:count, :count], -t[count:, count:], -t[:count, count:])
     left = np.hstack((np.eye(count), -mixed)) @ z.conj().T
-    # states in the order of preference: those that influence the remaining modes most
-    weight = np.abs(left).max(axis=0) > ROUNDING
-    order = qr((right * np.where(weight, 1.0, ROUNDING)[:, None]).conj().T, pivoting=True)[2]
+    # the states that influence the remaining modes, and among them first the motion
+    weight = np.where(np.abs(left).max(axis=0) > ROUNDING, 1.0, ROUNDING)
+    weight[moving] *= PREFERENCE
+    order = qr((right * weight[:, None]).conj().T, pivoting=True)[2]
     chosen = np.sort(order[:count])
     basis = right[chosen]
     inverse = np.linalg.inv(basis)
@@ -326,9 +355,7 @@ def _state_variables(motion: IntervalMap, steady: SteadyMotion) -> list[Variable
         if actuator in motion.vessel.commands:
             channel = motion.vessel.commands[actuator]
             scale = 0.5 * (channel.high - channel.low)
-        group = name.rpartition(".")[0]
-        if actuator:
-            group = name.partition(".")[0]
+        group = name.partition(".")[0]
         found.append(Variable(name, unit_of(actuator) if actuator else "", value, scale, group))
     return found
 

@@ -1,6 +1,7 @@
 """Steady motion (trim) of a vessel under given commands, or at a given speed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import inf, sqrt
 
@@ -31,6 +32,7 @@ SETTLING = 400.0  # [sqrt(L / g)] of simulation where the search without one fin
 # Times at which the motion must still be steady, in units of sqrt(L / g), and the largest scaled
 # rate there
 LATER, STILL_STEADY = (1.7, 11.3), 1e-6
+OTHER_HEADING = 0.02  # [rad] from the steady one, at which rates must not depend on time either
 LARGEST_ANGLE = 1.5  # [rad] of roll and pitch; a vessel beyond has capsized
 
 
@@ -86,16 +88,23 @@ def find_steady_motion(
     given = _checked_commands(vessel, commands or {})
     if speed is not None and "surge" not in vessel.dof:
         raise BadInput(f"{vessel.name} is not free in surge; --speed is allowed for vessels that are")
-    balance = _Balance(vessel, given, speed)
-    found = balance.solve()
-    if found is None:
-        raise BadInput(_failure(vessel, given, speed))
-    if not balance.lasts(found):
+    varies = False
+    # straight motions first: without straight-line stability the commands of a straight course have
+    # a turning circle, too
+    for straight in (True, False):
+        balance = _Balance(vessel, given, speed, straight)
+        for found in balance.solutions():
+            if balance.lasts(found):
+                return found
+            varies = True
+        if speed is not None or "yaw" not in vessel.dof:
+            break
+    if varies:
         raise BadInput(
-            f"{vessel.name}: no steady motion, because a force depends on time or place, such as "
-            "that of waves; allowed are vessels in calm and unlimited water"
+            f"{vessel.name}: no steady motion, because a force depends on time or place, as that "
+            "of waves, or on the heading in a turn; allowed are vessels in calm and unlimited water"
         )
-    return found
+    raise BadInput(_failure(vessel, given, speed))
 
 
 def _checked_commands(vessel: Vessel, commands: Mapping[str, float]) -> dict[str, float]:
@@ -118,72 +127,71 @@ def _failure(vessel: Vessel, given: Mapping[str, float], speed: float | None) ->
         words = ", ".join(f"{name} = {value:g}" for name, value in given.items())
         return f"{vessel.name}: no steady motion with {words or 'neutral commands'}"
     start = f"{vessel.name}: no steady straight course at speed = {speed:g} m/s"
-    reached = _speed_at_full_commands(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+    thrust, _ = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+    if not thrust:
+        return f"{start}; no free command changes its thrust in that direction"
+    reached = _speed_at_full_commands(vessel, given, thrust)
     if reached is None:
         return f"{start} within the ranges of the commands"
     return f"{start}; the commands at the ends of their ranges give {reached:.4g} m/s"
 
 
 def _speed_at_full_commands(
-    vessel: Vessel, given: Mapping[str, float], sign: float
+    vessel: Vessel, given: Mapping[str, float], thrust: Mapping[str, float]
 ) -> float | None:
-    """Speed of the usual commands ahead or astern, increased until one reaches its range."""
-    directions = _directions(vessel, given, sign)
-    if not directions:
-        return None
+    """Speed with the usual commands ahead or astern, increased until one reaches its range."""
     most = inf
-    for name, by in directions[0].items():
+    for name, by in thrust.items():
         channel = vessel.commands[name]
         end = channel.high if by > 0.0 else channel.low
-        if by:
-            most = min(most, (end - channel.neutral) / by)
+        most = min(most, (end - channel.neutral) / by)
     commands = dict(given)
-    for name, by in directions[0].items():
+    for name, by in thrust.items():
         commands[name] = vessel.commands[name].neutral + most * by
-    found = _Balance(vessel, commands, None).solve()
-    return None if found is None else found.state.u
+    for found in _Balance(vessel, commands, None, True).solutions():
+        return found.state.u
+    return None
 
 
 def _directions(
     vessel: Vessel, given: Mapping[str, float], sign: float
-) -> list[dict[str, float]]:
-    """Changes of the free commands: for more thrust, and per rad of helm."""
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Changes of the free commands: for thrust ahead or astern, and per rad of helm."""
     table = vessel.manoeuvring
-    try:
+    with suppress(BadInput, BadPhysics):  # a vessel without steering has no such table
         table = complete_manoeuvring_table(vessel)
-    except (BadInput, BadPhysics):
-        pass
     thrust: dict[str, float] = {}
     for name, value in (table.ahead if sign > 0.0 else table.astern).items():
         if name not in given and value != vessel.commands[name].neutral:
             thrust[name] = value - vessel.commands[name].neutral
     helm = {name: value for name, value in table.steer.items() if name not in given}
-    found = [one for one in (thrust, helm) if one]
-    if found:
-        return found
-    for name, channel in vessel.commands.items():
-        if name not in given:
-            found.append({name: sign * 0.5 * (channel.high - channel.low)})
-    return found
+    return thrust, helm
 
 
 class _Balance:
     """Rates of change of a vessel's state as a function of scaled unknowns."""
 
-    def __init__(self, vessel: Vessel, given: Mapping[str, float], speed: float | None) -> None:
+    def __init__(
+        self, vessel: Vessel, given: Mapping[str, float], speed: float | None, straight: bool
+    ) -> None:
         """Choose the unknowns.
 
         Args:
             vessel: The vessel.
             given: Commands by channel.
             speed: Speed in surge [m/s]; None where it is unknown.
+            straight: Whether the yaw rate is zero.
         """
-        self.vessel, self.given, self.speed = vessel, given, speed
+        self.vessel, self.given, self.speed, self.straight = vessel, given, speed, straight
         self.unit = sqrt(vessel.length / GRAVITY)  # [s]
         self.motion = IntervalMap(vessel, INTERVAL * self.unit)
         scales = motion_scales(vessel)
         fields = self.motion.fields
-        fixed = ["psi"] if speed is None else ["psi", "u", "r"]
+        fixed = ["psi"]
+        if speed is not None:
+            fixed.append("u")
+        if straight:
+            fixed.append("r")
         self.unknown = [name for name in fields if name not in fixed]
         self.scale = np.array([scales[name] for name in self.unknown])
         self.rows = [i for i, name in enumerate(fields) if name != "psi"]
@@ -191,7 +199,8 @@ class _Balance:
         self.row_scale = np.array([scales[fields[i]] for i in self.rows]) / self.unit
         self.directions: list[dict[str, float]] = []
         if speed is not None:
-            self.directions = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+            both = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+            self.directions = [one for one in both if one]
         # the memory of actuators settles at their commands, that of other effects need not
         kinds = [e for e in self.motion.vessel.effects if not isinstance(e, ChannelEffect)]
         stores = any(not actuator for actuator in self.motion.memory_actuators) and kinds
@@ -199,31 +208,37 @@ class _Balance:
         if stores:
             self.memory_size = len(self.motion.memory_names)
 
-    def solve(self) -> SteadyMotion | None:
-        """Return the first steady motion that Newton's method finds."""
+    def solutions(self) -> Iterator[SteadyMotion]:
+        """Yield the steady motions that Newton's method finds from different starts."""
         for x in self._starts():
             found = self._newton(x)
             if found is not None:
-                return self._motion_of(found)
-        if self.speed is None:
+                yield self._motion_of(found)
+        if self.speed is None and not self.straight:
             settled = self._settled()
             if settled is not None:
                 found = self._newton(settled)
                 if found is not None:
-                    return self._motion_of(found)
-        return None
+                    yield self._motion_of(found)
 
     def lasts(self, steady: SteadyMotion) -> bool:
-        """Whether the motion is still steady at later times and other places."""
-        s, begin = steady.state, self._begin(steady.state, steady.commands, steady.memory)
+        """Whether motion and derivatives stay the same at later times and other places."""
+        s = steady.state
+        first = self._rates(s, steady), self._rates(s._replace(psi=OTHER_HEADING), steady)
         for times in LATER:
             t = times * self.unit
             moved = s._replace(t=t, psi=s.r * t, x=s.u * t, y=s.v * t)
-            change = self.motion.advance(moved, self._offset(steady.memory), steady.commands)
-            rates = (change - begin)[self.rows] / self.motion.length / self.row_scale
-            if not np.abs(rates).max() < STILL_STEADY:
-                return False
+            turned = moved._replace(psi=moved.psi + OTHER_HEADING)
+            for before, state in zip(first, (moved, turned), strict=True):
+                if not np.abs(self._rates(state, steady) - before).max() < STILL_STEADY:
+                    return False
         return True
+
+    def _rates(self, state: State, steady: SteadyMotion) -> Array:
+        """Scaled rates of the motion with the commands and memory of a steady motion."""
+        begin = self._begin(state, steady.commands, steady.memory)
+        end = self.motion.advance(state, self._offset(steady.memory), steady.commands)
+        return np.asarray((end - begin)[self.rows] / self.motion.length / self.row_scale)
 
     def _starts(self) -> list[Array]:
         """Scaled unknowns at which the search begins."""
@@ -239,7 +254,7 @@ class _Balance:
         if "u" not in self.unknown:
             return starts
         place = self.unknown.index("u")
-        speeds = [number / 1.0 for number in FROUDE_NUMBERS]  # in units of sqrt(g L)
+        speeds = list(FROUDE_NUMBERS)  # in units of sqrt(g L)
         if self.vessel.manoeuvring.speed:
             speeds.insert(0, self.vessel.manoeuvring.speed / self.scale[place])
         for u in speeds:
@@ -298,7 +313,7 @@ class _Balance:
         state, memory = State(), np.zeros(self.memory_size)
         commands = self._commands(self._zeros())
         try:
-            for _ in range(round(SETTLING / INTERVAL / 1.0)):
+            for _ in range(round(SETTLING / INTERVAL)):
                 end = self.motion.advance(state, self._offset(memory), commands)
                 values = dict(zip(self.motion.fields, end.tolist(), strict=False))
                 values["psi"] = 0.0
