@@ -158,7 +158,7 @@ class LinearModel:
         Raises:
             BadInput: There is no such state.
         """
-        return _index("state", name, self.states)
+        return _index(f"{self.vessel}: state", name, self.states)
 
     def input(self, name: str) -> int:
         """Return the index of an input.
@@ -169,7 +169,7 @@ class LinearModel:
         Raises:
             BadInput: There is no such input.
         """
-        return _index("input", name, self.inputs)
+        return _index(f"{self.vessel}: input", name, self.inputs)
 
     def with_outputs(self, names: Sequence[str]) -> "LinearModel":
         """Return the model with some of its states as outputs.

@@ -123,10 +123,12 @@ def _checked_commands(vessel: Vessel, commands: Mapping[str, float]) -> dict[str
 
 def _failure(vessel: Vessel, given: Mapping[str, float], speed: float | None) -> str:
     """Message for a vessel without a steady motion."""
+    words = ", ".join(f"{name} = {value:g}" for name, value in given.items())
     if speed is None:
-        words = ", ".join(f"{name} = {value:g}" for name, value in given.items())
         return f"{vessel.name}: no steady motion with {words or 'neutral commands'}"
     start = f"{vessel.name}: no steady straight course at speed = {speed:g} m/s"
+    if words:
+        start += f" with {words}"
     thrust, _ = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
     if not thrust:
         return f"{start}; no free command changes its thrust in that direction"
