@@ -94,10 +94,8 @@ def _print_variables(model: LinearModel) -> None:
     for kind, variables in (("state", model.states), ("input", model.inputs)):
         for one in variables:
             rows.append([kind, one.name, _value_text(one), one.unit])
-    title = f"{model.vessel}: steady motion, heading north"
-    if model.load:
-        title = f"{model.vessel}, {', '.join(model.load)}: steady motion, heading north"
-    print_text_table(title, ["", "name", "value", "unit"], rows, 2)
+    title = ", ".join((model.vessel, *model.load))
+    print_text_table(f"{title}: steady motion", ["", "name", "value", "unit"], rows, 2)
 
 
 def _value_text(variable: Variable) -> str:
@@ -125,4 +123,8 @@ def _print_modes(model: LinearModel) -> None:
         decay, period = describe_decay(mode), describe_period(mode)
         rows.append([mode.name, text, decay, period, damping, ", ".join(lacks)])
     head = ["mode", "eigenvalue 1/s", "time constant s", "period s", "damping", "remark"]
+    if not any(row[-1] for row in rows):
+        head.pop()
+        for row in rows:
+            row.pop()
     print_text_table("modes, the slowest first", head, rows, 1)

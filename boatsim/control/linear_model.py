@@ -412,10 +412,10 @@ def read_linear_model(path: Path | str) -> LinearModel:
 
 
 def _model_of_table(table: Mapping[str, Any]) -> LinearModel:
-    kinds = {}
+    parts: dict[str, Any] = {}
     for name in ("states", "inputs", "outputs", "forces"):
-        kinds[name] = tuple(Variable(**one) for one in table[name])
-    n, sizes = len(kinds["states"]), {name: len(ones) for name, ones in kinds.items()}
+        parts[name] = tuple(Variable(**one) for one in table[name])
+    n, sizes = len(parts["states"]), {name: len(ones) for name, ones in parts.items()}
     shapes = {
         "a": (n, n),
         "b": (n, sizes["inputs"]),
@@ -423,14 +423,12 @@ def _model_of_table(table: Mapping[str, Any]) -> LinearModel:
         "d": (sizes["outputs"], sizes["inputs"]),
         "e": (n, sizes["forces"]),
     }
-    matrices = {}
     for name, shape in shapes.items():
-        matrices[name] = np.array(table[name.upper()], dtype=float).reshape(shape)
+        parts[name] = np.array(table[name.upper()], dtype=float).reshape(shape)
     return LinearModel(
         table["vessel"],
         tuple(table["load"]),
-        **kinds,
-        **matrices,
+        **parts,
         delay=float(table["input_delay_s"]),
         dt=float(table["dt_s"]),
         accuracy=float(table["accuracy"]),

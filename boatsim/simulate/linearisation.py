@@ -5,7 +5,7 @@ state-space model.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -188,7 +188,7 @@ def linear_model(
     first = _continuous_model(vessel, steady, length, 1.0, position)
     model = _continuous_model(vessel, steady, 0.5 * length, 0.5, position)
     accuracy = _response_difference(first, model, sqrt(vessel.length / GRAVITY))
-    found = LinearModel(**{**vars(model), "accuracy": accuracy})
+    found = replace(model, accuracy=accuracy)
     if not outputs:
         outputs = [one.name for one in found.states if one.name in State._fields]
     return found.with_outputs(outputs)
@@ -282,7 +282,7 @@ def _continuous_model(
 
 def _without_immediate_states(
     a: Array, b: Array, moving: NDArray[np.bool_]
-) -> tuple[Array, Array, Array]:
+) -> tuple[NDArray[np.int64], Array, Array]:
     """Remove the modes of a sampled model that decay within the interval.
 
     They belong to actuators without lag, which only store the last command. The remaining states
@@ -304,7 +304,7 @@ def _without_immediate_states(
     t, z, count = schur(a, output="complex", sort=slow)
     n = len(a)
     if count == n:
-        return np.arange(n), a, b
+        return np.arange(n, dtype=np.int64), a, b
     right = z[:, :count]
     mixed = solve_sylvester(t[:count, :count], -t[count:, count:], -t[:count, count:])
     left = np.hstack((np.eye(count), -mixed)) @ z.conj().T
@@ -312,7 +312,7 @@ def _without_immediate_states(
     weight = np.where(np.abs(left).max(axis=0) > ROUNDING, 1.0, ROUNDING)
     weight[moving] *= PREFERENCE
     order = qr((right * weight[:, None]).conj().T, pivoting=True)[2]
-    chosen = np.sort(order[:count])
+    chosen = np.sort(order[:count]).astype(np.int64)
     basis = right[chosen]
     inverse = np.linalg.inv(basis)
     return (

@@ -12,7 +12,7 @@ from boatsim.physics.kinds.channel import ChannelEffect
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.interval_map import POSITION, IntervalMap
+from boatsim.simulate.interval_map import IntervalMap
 from boatsim.simulate.manoeuvre import complete_manoeuvring_table
 from boatsim.simulate.stepper import State
 
@@ -87,7 +87,9 @@ def find_steady_motion(
     """
     given = _checked_commands(vessel, commands or {})
     if speed is not None and "surge" not in vessel.dof:
-        raise BadInput(f"{vessel.name} is not free in surge; --speed is allowed for vessels that are")
+        raise BadInput(
+            f"{vessel.name} is not free in surge; --speed is allowed for vessels that are"
+        )
     varies = False
     # straight motions first: without straight-line stability the commands of a straight course have
     # a turning circle, too
@@ -349,7 +351,9 @@ class _Balance:
         return offset
 
     def _state(self, x: Array) -> State:
-        values = dict(zip(self.unknown, (x[: len(self.unknown)] * self.scale).tolist(), strict=True))
+        values = dict(
+            zip(self.unknown, (x[: len(self.unknown)] * self.scale).tolist(), strict=True)
+        )
         if self.speed is not None:
             values["u"] = self.speed
         return State(**values)

@@ -116,9 +116,7 @@ def test_sway_and_yaw_under_way_are_those_of_the_handbook(
         return
     model = boatsim.linearise(vessel, speed=speed)
     coupling = added[1] * lever
-    m = np.array(
-        [[120.0 + added[1], coupling], [coupling, 40.0 + added[2] + coupling * lever]]
-    )
+    m = np.array([[120.0 + added[1], coupling], [coupling, 40.0 + added[2] + coupling * lever]])
     n = np.array(
         [
             [damping[1], (120.0 + added[0]) * speed + couplings[0]],
@@ -139,9 +137,7 @@ def test_nomoto_constants_of_a_rudder_ship_are_those_of_its_derivatives() -> Non
     model = boatsim.linearise("kvlcc2", speed=speed)
     m = np.array([[mass + 2486.0, mass * centre], [mass * centre, 9908.6 + 6009.0]])
     m[1, 1] += mass * centre**2
-    n = np.array(
-        [[591.4, mass * speed - 801.8], [1800.6, mass * centre * speed + 4508.0]]
-    )
+    n = np.array([[591.4, mass * speed - 801.8], [1800.6, mass * centre * speed + 4508.0]])
     b = np.array([-113.9, 391.9])
     # Davidson and Schiff 1946
     determinant = np.linalg.det(n)
@@ -489,7 +485,11 @@ def test_a_model_that_is_read_again_is_the_same(tmp_path: Path) -> None:
     again = read_linear_model(tmp_path / "model.json")
     for name in "abcde":
         assert np.array_equal(getattr(again, name), getattr(model, name))
-    assert (again.states, again.inputs, again.outputs) == (model.states, model.inputs, model.outputs)
+    assert (again.states, again.inputs, again.outputs) == (
+        model.states,
+        model.inputs,
+        model.outputs,
+    )
     assert again.modes == model.modes
     model.write(tmp_path / "model.npz")
     with np.load(tmp_path / "model.npz") as file:  # without pickle
