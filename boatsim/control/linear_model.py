@@ -47,6 +47,9 @@ class Variable(NamedTuple):
     group: str = ""
 
 
+VARIABLE = Variable._fields
+
+
 class Mode(NamedTuple):
     """A real eigenvalue or a pair of conjugate eigenvalues of a linear model.
 
@@ -66,12 +69,16 @@ class Mode(NamedTuple):
     def time_constant(self) -> float:
         """Time constant of the decay, or of the growth of an unstable mode [s]; may be infinite."""
         rate = abs(self.eigenvalue.real)
-        return 1.0 / rate if rate > 0.0 else inf
+        if rate == 0.0:
+            return inf
+        return 1.0 / rate
 
     @property
     def frequency(self) -> float:
         """Undamped natural frequency of a pair of eigenvalues, 0 for a real one [rad/s]."""
-        return abs(self.eigenvalue) if self.eigenvalue.imag else 0.0
+        if not self.eigenvalue.imag:
+            return 0.0
+        return abs(self.eigenvalue)
 
     @property
     def damping_ratio(self) -> float:
@@ -304,17 +311,15 @@ class LinearModel:
 
     def _scaled(self, a: Array) -> Array:
         """A for states in units of their scales."""
-        scales = np.array([one.scale for one in self.states])
+        scales = variable_scales(self.states)
         return np.asarray(a * scales / scales[:, None])
 
     def _scaled_inputs(self) -> Array:
-        scales = np.array([one.scale for one in self.states])
-        spans = np.array([one.scale for one in self.inputs])
+        scales, spans = variable_scales(self.states), variable_scales(self.inputs)
         return np.asarray(self._continuous_b() * spans / scales[:, None])
 
     def _scaled_outputs(self) -> Array:
-        scales = np.array([one.scale for one in self.states])
-        sizes = np.array([one.scale for one in self.outputs])
+        scales, sizes = variable_scales(self.states), variable_scales(self.outputs)
         return np.asarray(self.c * scales / sizes[:, None])
 
     # Files
@@ -324,12 +329,14 @@ class LinearModel:
         """Return the content of the JSON file of the model."""
         modes = []
         for mode in self.modes:
-            time = mode.time_constant
+            time: float | None = mode.time_constant
+            if time == inf:
+                time = None
             modes.append(
                 {
                     "name": mode.name,
                     "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-                    "time_constant_s": None if isinf(time) else time,
+                    "time_constant_s": time,
                     "frequency_radps": mode.frequency,
                     "damping_ratio": mode.damping_ratio,
                     "controllable": mode.controllable,
@@ -375,11 +382,13 @@ class LinearModel:
         arrays["dt"], arrays["input_delay"] = self.dt, self.delay
         kinds = {"states": "x0", "inputs": "u0", "outputs": "y0", "forces": "w0"}
         for name, point in kinds.items():
-            arrays[name] = np.array([one.name for one in getattr(self, name)], dtype=str)
-            arrays[f"{name}_units"] = np.array([one.unit for one in getattr(self, name)], dtype=str)
-            arrays[point] = np.array([one.value for one in getattr(self, name)], dtype=float)
-        arrays["eigenvalues"] = np.array([mode.eigenvalue for mode in self.modes])
-        arrays["modes"] = np.array([mode.name for mode in self.modes], dtype=str)
+            variables = np.array(getattr(self, name), dtype=object).reshape(-1, len(VARIABLE))
+            arrays[name] = variables[:, VARIABLE.index("name")].astype(str)
+            arrays[f"{name}_units"] = variables[:, VARIABLE.index("unit")].astype(str)
+            arrays[point] = variables[:, VARIABLE.index("value")].astype(float)
+        modes = self.modes
+        arrays["eigenvalues"] = np.array([mode.eigenvalue for mode in modes])
+        arrays["modes"] = np.array([mode.name for mode in modes], dtype=str)
         with path.open("wb") as file:
             np.savez(file, **arrays)
 
@@ -402,8 +411,10 @@ def read_linear_model(path: Path | str) -> LinearModel:
         raise BadInput(
             f"{path}: is no JSON text; allowed is a file of boatsim linearise --out model.json"
         ) from None
-    if not isinstance(table, dict) or table.get("format") != FORMAT:
-        found = table.get("format") if isinstance(table, dict) else None
+    found = None
+    if isinstance(table, dict):
+        found = table.get("format")
+    if found != FORMAT:
         raise BadInput(f"{path}: format = {found!r}; allowed is {FORMAT!r}")
     try:
         return _model_of_table(table)
@@ -464,8 +475,26 @@ def held_input_matrices(a: Array, b: Array, dt: float) -> tuple[Array, Array]:
     return whole[:n, :n], whole[:n, n:]
 
 
+def variable_names(variables: Iterable[Variable]) -> list[str]:
+    """Return the names of variables in their order.
+
+    Args:
+        variables: States, inputs, outputs or forces.
+    """
+    return [one.name for one in variables]
+
+
+def variable_scales(variables: Iterable[Variable]) -> Array:
+    """Return the scales (n,) of variables in their order.
+
+    Args:
+        variables: States, inputs, outputs or forces.
+    """
+    return np.array([one.scale for one in variables])
+
+
 def _index(what: str, name: str, variables: Iterable[Variable]) -> int:
-    names = [one.name for one in variables]
+    names = variable_names(variables)
     if name not in names:
         raise BadInput(unknown_name_message(what, name, names))
     return names.index(name)

@@ -105,7 +105,9 @@ class IntervalMap:
         values = {}
         for name, by in zip(self.fields, change, strict=False):
             values[name] = getattr(start, name) + by
-        self._engine.reset(start._replace(**values), commands if settled is None else settled)
+        if settled is None:
+            settled = commands
+        self._engine.reset(start._replace(**values), settled)
         self._memory[:] += change[len(self.fields) :]
         self._engine.command(commands)
         if force is not None:
@@ -127,11 +129,12 @@ class IntervalMap:
         for number, effect in enumerate(program.effects):
             if isinstance(effect, ChannelEffect):
                 slots = type(effect).slots
-                for actuator in program.target_actuators(number) if slots else ():
+                for actuator in program.target_actuators(number):
                     at = program.memory_offset(number, actuator)
                     for k in range(slots):
-                        place = f".{k + 1}" if slots > 1 else ""
-                        names[at + k] = f"{effect.name}.{actuator}{place}"
+                        names[at + k] = f"{effect.name}.{actuator}"
+                        if slots > 1:
+                            names[at + k] += f".{k + 1}"
                         actuators[at + k] = actuator
                 continue
             if isinstance(effect, MotionMemory):
@@ -156,4 +159,6 @@ def _without_rate_limits(vessel: Vessel) -> Vessel:
             if isinstance(effect, RateLimit) and effect.lag > 0.0:
                 most = min(most, 0.5 * effect.instant)
             rates[effect.name] = {"rate": most}
-    return vessel.with_parameters(rates) if rates else vessel
+    if not rates:
+        return vessel
+    return vessel.with_parameters(rates)

@@ -12,10 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.control.adaptive import Complex
-from boatsim.control.linear_model import LinearModel, Variable
+from boatsim.control.linear_model import (
+    LinearModel,
+    Variable,
+    variable_names,
+    variable_scales,
+)
 from boatsim.errors import BadInput
 from boatsim.physics.particulars import GRAVITY
-from boatsim.physics.signals import AXES, COMPONENTS, STATE, Array
+from boatsim.physics.signals import COMPONENTS, ROTATIONS, STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.simulate.interval_map import POSITION, IntervalMap
@@ -190,7 +195,7 @@ def linear_model(
     accuracy = _response_difference(first, model, sqrt(vessel.length / GRAVITY))
     found = replace(model, accuracy=accuracy)
     if not outputs:
-        outputs = [one.name for one in found.states if one.name in State._fields]
+        outputs = [name for name in variable_names(found.states) if name in State._fields]
     return found.with_outputs(outputs)
 
 
@@ -213,8 +218,7 @@ def _response_difference(first: LinearModel, second: LinearModel, unit: float) -
 
 def _motion_response(model: LinearModel, frequency: float) -> Complex:
     """Response (motions, inputs and forces) at a frequency [rad/s], in units of the scales."""
-    x = np.array([one.scale for one in model.states])
-    u = np.array([one.scale for one in (*model.inputs, *model.forces)])
+    x, u = variable_scales(model.states), variable_scales((*model.inputs, *model.forces))
     pencil = 1j * frequency * np.eye(len(x)) - model.a * x / x[:, None]
     inputs = np.hstack((model.b, model.e)) * u / x[:, None]
     rows = [i for i, one in enumerate(model.states) if one.name in State._fields]
@@ -228,19 +232,16 @@ def _continuous_model(
     motion = IntervalMap(vessel, length, position=True)
     found = _derivatives(motion, steady, share, motion.force_axes)
     variables = _state_variables(motion, steady)
-    scale = np.array([one.scale for one in variables])
-    inputs = _input_variables(motion.vessel, steady)
-    span = np.array([one.scale for one in inputs])
-    forces = _force_variables(motion)
-    size = np.array([one.scale for one in forces])
+    inputs, forces = _input_variables(motion.vessel, steady), _force_variables(motion)
+    scale, span = variable_scales(variables), variable_scales(inputs)
+    size = variable_scales(forces)
     a = found.a * scale / scale[:, None]
     b, e = found.b * span / scale[:, None], found.e * size / scale[:, None]
     unused = [i for i, one in enumerate(variables) if not one.name]
-    if not position:
-        for name in POSITION:
-            i = motion.fields.index(name) if name in motion.fields else -1
-            others = np.delete(a[:, i], i) if i >= 0 else np.ones(1)
-            if np.abs(others).max() < ROUNDING:
+    for name in POSITION:
+        if not position and name in motion.fields:
+            i = motion.fields.index(name)
+            if np.abs(np.delete(a[:, i], i)).max() < ROUNDING:
                 unused.append(i)
     kept = np.setdiff1d(np.arange(len(variables)), unused)
     both = np.hstack((b, e))[kept]
@@ -257,7 +258,7 @@ def _continuous_model(
     remarks = []
     if motion.ignored:
         remarks.append(f"without the play of {', '.join(motion.ignored)}")
-    named = {one.name for one in (*states, *inputs)}
+    named = variable_names((*states, *inputs))
     kinks = [name for name in found.kinks if name in named]
     if kinks:
         remarks.append(
@@ -343,7 +344,9 @@ def _state_variables(motion: IntervalMap, steady: SteadyMotion) -> list[Variable
     scales = motion_scales(motion.vessel)
     found = []
     for name in motion.fields:
-        value = 0.0 if name in (*POSITION, "psi") else getattr(steady.state, name)
+        value = getattr(steady.state, name)
+        if name in (*POSITION, "psi"):
+            value = 0.0
         unit = unit_of(signals[name].column)
         found.append(Variable(name, unit, float(value), scales[name], signals[name].axis))
     settled = motion.settled_state(steady.state, steady.commands)[len(motion.fields) :]
@@ -355,8 +358,7 @@ def _state_variables(motion: IntervalMap, steady: SteadyMotion) -> list[Variable
         if actuator in motion.vessel.commands:
             channel = motion.vessel.commands[actuator]
             scale = 0.5 * (channel.high - channel.low)
-        group = name.partition(".")[0]
-        found.append(Variable(name, unit_of(actuator) if actuator else "", value, scale, group))
+        found.append(Variable(name, unit_of(actuator), value, scale, name.partition(".")[0]))
     return found
 
 
@@ -374,7 +376,8 @@ def _force_variables(motion: IntervalMap) -> list[Variable]:
     found = []
     for axis in motion.force_axes:
         name, _, _ = COMPONENTS[axis].partition("_")
-        rotates = axis in AXES[3:]
-        scale = GRAVITY * _inertia(motion.vessel, axis) / (motion.vessel.length if rotates else 1.0)
-        found.append(Variable(name, "N m" if rotates else "N", 0.0, scale, axis))
+        unit, scale = "N", GRAVITY * _inertia(motion.vessel, axis)
+        if axis in ROTATIONS:
+            unit, scale = "N m", scale / motion.vessel.length
+        found.append(Variable(name, unit, 0.0, scale, axis))
     return found

@@ -131,7 +131,7 @@ def _failure(vessel: Vessel, given: Mapping[str, float], speed: float | None) ->
     start = f"{vessel.name}: no steady straight course at speed = {speed:g} m/s"
     if words:
         start += f" with {words}"
-    thrust, _ = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+    thrust, _ = _directions(vessel, given, speed)
     if not thrust:
         return f"{start}; no free command changes its thrust in that direction"
     reached = _speed_at_full_commands(vessel, given, thrust)
@@ -147,8 +147,9 @@ def _speed_at_full_commands(
     most = inf
     for name, by in thrust.items():
         channel = vessel.commands[name]
-        end = channel.high if by > 0.0 else channel.low
-        most = min(most, (end - channel.neutral) / by)
+        for end in (channel.low, channel.high):
+            if (end - channel.neutral) / by > 0.0:
+                most = min(most, (end - channel.neutral) / by)
     commands = dict(given)
     for name, by in thrust.items():
         commands[name] = vessel.commands[name].neutral + most * by
@@ -158,14 +159,17 @@ def _speed_at_full_commands(
 
 
 def _directions(
-    vessel: Vessel, given: Mapping[str, float], sign: float
+    vessel: Vessel, given: Mapping[str, float], speed: float
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Changes of the free commands: for thrust ahead or astern, and per rad of helm."""
     table = vessel.manoeuvring
     with suppress(BadInput, BadPhysics):  # a vessel without steering has no such table
         table = complete_manoeuvring_table(vessel)
+    usual = table.ahead
+    if speed < 0.0:
+        usual = table.astern
     thrust: dict[str, float] = {}
-    for name, value in (table.ahead if sign > 0.0 else table.astern).items():
+    for name, value in usual.items():
         if name not in given and value != vessel.commands[name].neutral:
             thrust[name] = value - vessel.commands[name].neutral
     helm = {name: value for name, value in table.steer.items() if name not in given}
@@ -203,7 +207,7 @@ class _Balance:
         self.row_scale = np.array([scales[fields[i]] for i in self.rows]) / self.unit
         self.directions: list[dict[str, float]] = []
         if speed is not None:
-            both = _directions(vessel, given, 1.0 if speed >= 0.0 else -1.0)
+            both = _directions(vessel, given, speed)
             self.directions = [one for one in both if one]
         # the memory of actuators settles at their commands, that of other effects need not
         kinds = [e for e in self.motion.vessel.effects if not isinstance(e, ChannelEffect)]
@@ -281,7 +285,9 @@ class _Balance:
                 if not np.isfinite(residual).all():
                     return None
                 if np.abs(residual).max() < STEADY:
-                    return x if self._is_upright(x) else None
+                    if self._is_upright(x):
+                        return x
+                    return None
                 columns = []
                 for i in range(len(x)):
                     step = np.zeros(len(x))
