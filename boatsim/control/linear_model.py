@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name_message
-from boatsim.physics.signals import AXES, Array
+from boatsim.physics.base import AXES, Array
 
 if TYPE_CHECKING:
     from scipy.signal import StateSpace

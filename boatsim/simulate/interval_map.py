@@ -38,6 +38,7 @@ class IntervalMap:
         memory_actuators: Actuator of each of these entries, "" for none.
         delay: Dead time of the commands that is left out [s].
         ignored: Names of the effects with play that are left out.
+        delayed: Actuators with the dead time, if it does not act on all.
     """
 
     def __init__(self, vessel: Vessel, length: float, position: bool = False) -> None:
@@ -48,11 +49,16 @@ class IntervalMap:
             length: Length of the interval [s].
             position: Whether x and y belong to the state.
         """
-        self.length, self.delay, self.ignored = length, 0.0, []
+        self.length, self.delay = length, 0.0
+        self.ignored: list[str] = []
+        self.delayed: list[str] = []
         for effect in vessel.effects:
             kind = type(effect).type_name()
             if kind == DELAY:
                 self.delay += effect.values()[list(type(effect).params()).index("delay")]
+                delayed = vessel.target_actuators(effect)
+                if set(delayed) != set(vessel.actuators):
+                    self.delayed += delayed
             if kind == PLAY:
                 self.ignored.append(effect.name)
             if kind in (DELAY, PLAY):
@@ -146,6 +152,9 @@ class IntervalMap:
             at = program.memory_offset(number, WHOLE)
             for k in range(slots):
                 names[at + k] = f"{effect.name}.{k + 1}"
+        for i in range(program.memory_size):  # of effects that store a signal
+            if not names[i]:
+                names[i] = f"memory.{i + 1}"
         return names, actuators
 
 

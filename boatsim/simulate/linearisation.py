@@ -258,6 +258,8 @@ def _continuous_model(
     remarks = []
     if motion.ignored:
         remarks.append(f"without the play of {', '.join(motion.ignored)}")
+    if motion.delayed:
+        remarks.append(f"the dead time acts on {', '.join(motion.delayed)} only")
     named = variable_names((*states, *inputs))
     kinks = [name for name in found.kinks if name in named]
     if kinks:

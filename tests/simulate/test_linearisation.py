@@ -361,6 +361,9 @@ def test_delay_and_play_are_named_and_left_out() -> None:
     late = late.with_effect({"use": "steering_backlash"})
     model = boatsim.linearise(late, speed=0.5)
     assert model.delay == pytest.approx(0.2)
+    one = vessel.with_effect({"use": "command_delay", "delay": 0.2, "on": ["thrust_port_N"]})
+    remarks = boatsim.linearise(one, speed=0.5).remarks
+    assert remarks == ("the dead time acts on thrust_port_N only",)
     assert "steering_backlash" in model.remarks[0]
     assert model.a == pytest.approx(plain.a, abs=1e-9)
 
