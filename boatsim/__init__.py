@@ -1,10 +1,10 @@
 """boatsim: small-boat motion and control on MuJoCo, and diagnosis of models from recordings.
 
 `load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose`, `replay` and `export` are the
-Python equivalents of the commands; `wave_field` gives the waves of a scenario. `Vessel`,
-`Scenario`, `Recording`, `Diagnosis`, `Run`, `Sweep` and `WaveField` are arguments and results;
-`Batch` and `Fleet` simulate many vessels together. All are defined or exported by `boatsim.api`,
-which is imported at first use.
+Python equivalents of the commands; `wave_field` gives the waves of a scenario, `linearise` the
+linear model of a vessel. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run`, `Sweep`,
+`WaveField` and `LinearModel` are arguments and results; `Batch` and `Fleet` simulate many vessels
+together. All are defined or exported by `boatsim.api`, which is imported at first use.
 """
 
 from importlib import import_module
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         CommandChannel,
         Diagnosis,
         Fleet,
+        LinearModel,
         Parameter,
         Recording,
         Run,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
         WaveField,
         diagnose,
         export,
+        linearise,
         load_scenario,
         load_vessel,
         read,
@@ -41,6 +43,7 @@ __all__ = [
     "CommandChannel",
     "Diagnosis",
     "Fleet",
+    "LinearModel",
     "Parameter",
     "Recording",
     "Run",
@@ -51,6 +54,7 @@ __all__ = [
     "__version__",
     "diagnose",
     "export",
+    "linearise",
     "load_scenario",
     "load_vessel",
     "read",

@@ -21,6 +21,7 @@ from boatsim.arguments import (
     optional_name,
     type_error,
 )
+from boatsim.control.linear_model import LinearModel as LinearModel
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.checks.data_cleaning import drop_faulty_values
@@ -53,11 +54,13 @@ from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import load_with_controller
 from boatsim.simulate.evaluation import Metric, all_metrics
 from boatsim.simulate.fleet import Fleet as Fleet
+from boatsim.simulate.linearisation import linear_model
 from boatsim.simulate.run import run as simulate
 from boatsim.simulate.run_files import run_into_folder
 from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.run_summary import run_html
 from boatsim.simulate.scenario import Scenario as Scenario
+from boatsim.simulate.steady_motion import find_steady_motion
 from boatsim.sweeps.axes import make_axis
 from boatsim.sweeps.designs import Design
 from boatsim.sweeps.execute import run_plan
@@ -75,6 +78,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LONGEST_HORIZON = 86400.0  # [s] of a free run, as of a scenario
+LONGEST_SAMPLE_TIME = 3600.0  # [s] of a discrete model
+FASTEST = 300.0  # [m/s] speed of a steady motion; more is a mistake
 MOST_JOBS = 10_000  # processes of a sweep; more is a mistake
 # Name of shipped content, or path of a file or folder
 Name = str | Path
@@ -742,6 +747,67 @@ def wave_field(scenario: Name | Scenario, seed: int | None = None) -> WaveField:
     if seed is not None:
         number = checked_integer("seed", seed)
     return effects_wave_field(effect.with_seed(number) for effect in loaded.vessel.effects)
+
+
+def linearise(
+    vessel: Name | Vessel,
+    speed: float | None = None,
+    commands: Mapping[str, float] | None = None,
+    load: Names = (),
+    outputs: Names = (),
+    position: bool = False,
+    discrete: float | None = None,
+) -> LinearModel:
+    """Return the linear state-space model x' = A x + B u, y = C x + D u about a steady motion.
+
+    Without a speed, commands that are not given are neutral. With a speed, those that are not given
+    follow from it. The heading of the steady motion is north.
+
+    Args:
+        vessel: Name or file of a vessel, or a `Vessel`.
+        speed: Speed in surge of a straight course [m/s].
+        commands: Commands of the steady motion by channel.
+        load: Load conditions of the vessel; not for a `Vessel`.
+        outputs: States that are outputs; by default heading, attitude and velocities.
+        position: Whether the position is a state also where no force depends on it.
+        discrete: Sample time of a discrete model with held inputs [s]; continuous by default.
+
+    Returns:
+        The matrices with the names, units and steady values of states, inputs and outputs.
+        `modes` has the eigenvalues, `state_space()` makes a `scipy.signal.StateSpace`, and
+        `write(path)` writes a .json or .npz file.
+
+    Raises:
+        BadInput: If a name or value cannot be used, or there is no steady motion.
+
+    >>> import boatsim
+    >>> model = boatsim.linearise("joystick_boat", speed=0.5)
+    >>> [state.name for state in model.states][:4]
+    ['psi', 'u', 'v', 'r']
+    >>> surge = [mode for mode in model.modes if mode.name == "surge"][0]
+    >>> f"{surge.time_constant:.3f} s"
+    '1.917 s'
+    """
+    loads = checked_names("load", load)
+    if isinstance(vessel, Vessel):
+        if loads:
+            raise BadInput("load is allowed with the name of a vessel only; a Vessel has its own")
+        loaded = vessel
+    else:
+        loaded = vessels.load_vessel(checked_name("vessel", vessel), loads)
+    if speed is not None:
+        speed = checked_number("speed", speed, -FASTEST, FASTEST, "m/s")
+    given = {}
+    for name, value in checked_mapping("commands", commands or {}).items():
+        given[name] = checked_number(f"commands[{name!r}]", value)
+    check_instance("position", position, bool, "True or False")
+    if discrete is not None:
+        discrete = checked_number("discrete", discrete, 1e-6, LONGEST_SAMPLE_TIME, "s")
+    steady = find_steady_motion(loaded, given, speed)
+    model = linear_model(loaded, steady, checked_names("outputs", outputs), position)
+    if discrete is None:
+        return model
+    return model.discretised(discrete)
 
 
 def _checked_values(argument: str, values: object) -> str | list[Any]:

@@ -8,7 +8,8 @@ from boatsim.control.allocation import HEADING, command_outboards, thrust_differ
 from boatsim.control.compiled import merged, record_type, unlocked
 from boatsim.control.joystick import demanded_yaw_rate
 from boatsim.control.lag_joystick import LagJoystick, actuator_output
-from boatsim.control.linear_quadratic import integral_gains
+from boatsim.control.linear_model import read_linear_model
+from boatsim.control.linear_quadratic import axis_parameters, integral_gains
 from boatsim.physics.base import UNSET, param
 
 # integral of the error [m or rad], modelled force of the actuators and missed force [N or N m]
@@ -92,9 +93,10 @@ class Lqi(LagJoystick):
 
     F is the modelled force of the actuators, a first-order lag. The gains minimise the integral of
     the squared error integral and of the squared command for the model I x' = F - d x; its numbers
-    are the nominal inertias and the damping `yaw_damping`, `surge_damping`. The weight of the
-    command is such that the natural frequency is the geometric mean of bandwidth and pole. Sway is
-    open-loop thrust.
+    are the nominal inertias and the damping `yaw_damping`, `surge_damping`, or those of the file
+    `model` that `boatsim linearise VESSEL --out FILE.json` wrote, with its motor lag and command
+    delay. The weight of the command is such that the natural frequency is the geometric mean of
+    bandwidth and pole. Sway is open-loop thrust.
     """
 
     words: ClassVar[str] = (
@@ -103,6 +105,7 @@ class Lqi(LagJoystick):
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
 
+    model: str = ""  # .json of boatsim linearise; replaces inertia, mass, damping, lag and delay
     yaw_damping: float = param(
         0.0, low=0.0, high=1e3, unit="N m s", words="assumed linear damping of the yaw rate"
     )
@@ -132,8 +135,12 @@ class Lqi(LagJoystick):
         """Set the gains that are not given by the linear-quadratic problem.
 
         Raises:
-            BadInput: An inertia, the pole or the period is not positive.
+            BadInput: An inertia, the pole or the period is not positive, or the file of the linear
+                model cannot be used.
         """
+        if self.model:
+            for name, value in axis_parameters(read_linear_model(self.model)).items():
+                setattr(self, name, value)
         super().derive_gains()
         lag = self.motor_lag + self.command_delay
         axes = (("yaw", self.inertia, self.yaw_damping), ("surge", self.mass, self.surge_damping))

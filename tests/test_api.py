@@ -22,13 +22,14 @@ from boatsim.physics import content
 from boatsim.physics.effects.current import Current
 
 OFFERED = (
-    *("diagnose", "export", "load_scenario", "load_vessel", "read", "replay", "run", "sweep"),
-    "wave_field",
+    *("diagnose", "export", "linearise", "load_scenario", "load_vessel", "read", "replay", "run"),
+    *("sweep", "wave_field"),
 )
 NOUNS = (
     "Batch",
     "Diagnosis",
     "Fleet",
+    "LinearModel",
     "Recording",
     "Run",
     "Scenario",

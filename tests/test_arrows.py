@@ -24,8 +24,8 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm control.compiled control.axis control.gradient_adaptation control.joystick "
     "control.motor_check control.operating_points control.passive_observer control.quadratic_program "
     "control.reference_motion control.thrust_allocation control.vessel_model control.dynamic_positioning "
-    "control.guidance control.lag_joystick control.linear_quadratic control.paths control.planned_path "
-    "control.receding_horizon".split()
+    "control.guidance control.lag_joystick control.linear_model control.linear_quadratic control.paths "
+    "control.planned_path control.receding_horizon".split()
 )
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "hull_assets", "engine", "env")}

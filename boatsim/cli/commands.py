@@ -51,6 +51,7 @@ COMMAND_GROUPS = {
         "sweep",
         "test",
         "manoeuvre",
+        "linearise",
         "margins",
         "robustness",
         "tune",
@@ -1061,6 +1062,63 @@ def margins(
 
     with trusted_content(content, trust, [vessel]):
         print_margins(controller, vessel, _split_loads(load))
+
+
+@app.command("linearise")
+@exits_with_code
+def linearise_(
+    vessel: Annotated[
+        str, typer.Argument(metavar="VESSEL", help="Name, folder or file of a vessel.")
+    ],
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            metavar="U",
+            help="Speed in surge [m/s] of a straight course; the commands follow from it.",
+        ),
+    ] = None,
+    command: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Command of the steady motion. Repeatable [default: neutral, or by --speed].",
+        ),
+    ] = None,
+    load: Load = None,
+    output: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="State that is an output. Repeatable [default: heading, attitude, velocities].",
+        ),
+    ] = None,
+    position: Annotated[
+        bool, typer.Option("--position", help="Add the position north and east as states.")
+    ] = False,
+    discrete: Annotated[
+        float | None,
+        typer.Option(metavar="DT", help="Sample time [s] of a discrete model with held inputs."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            parser=_parse_file,
+            help="File to write, .json or .npz [default: none].",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> None:
+    """Linearise a vessel about a steady motion: state-space model, eigenvalues, time constants.
+
+    The steady motion is that under the given commands, or a straight course at a speed.
+    """
+    from boatsim.cli.linearise import print_linear_model
+
+    with trusted_content(content, trust, [vessel]):
+        choice = (output or [], position, discrete)
+        print_linear_model(vessel, _split_loads(load), speed, command or [], choice, out)
 
 
 @app.command()

@@ -7,11 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.control.linear_model import LinearModel, held_input_matrices
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 
 # [s] a shorter actuator lag has no effect on a control period and is taken as this one
 SHORTEST_LAG = 1e-3
+
+# Velocity, force and parameters of the two axes of a joystick controller
+AXES_OF_MODEL = (("r", "N", "inertia", "yaw_damping"), ("u", "X", "mass", "surge_damping"))
 
 
 class IntegralGains(NamedTuple):
@@ -20,6 +24,44 @@ class IntegralGains(NamedTuple):
     integral: float  # [N/m or N m/rad]
     velocity: float  # [N s/m or N m s/rad]
     force: float  # dimensionless
+
+
+def axis_parameters(model: LinearModel) -> dict[str, float]:
+    """Return the numbers of a linear model of a vessel on which the design of two axes depends.
+
+    Inertia and damping of an axis are those of a fast motion in it alone: the inverse of its entry
+    in E and, multiplied by that, its entry on the diagonal of A. The lag is that of the slowest
+    motor.
+
+    Args:
+        model: Model of the vessel.
+
+    Returns:
+        `inertia`, `yaw_damping`, `mass`, `surge_damping`, `motor_lag` and `command_delay`; a
+        negative damping counts as none.
+
+    Raises:
+        BadInput: The model is discrete, or has no surge or yaw.
+    """
+    if model.dt:
+        raise BadInput(
+            f"{model.vessel}: the linear model is discrete; allowed is one without --discrete"
+        )
+    forces = [one.name for one in model.forces]
+    values = {}
+    for velocity, force, inertia, damping in AXES_OF_MODEL:
+        i = model.state(velocity)
+        values[inertia] = 1.0 / float(model.e[i, forces.index(force)])
+        values[damping] = max(0.0, -float(model.a[i, i]) * values[inertia])
+    lags: dict[str, float] = {}
+    motors = [one.name for one in model.inputs if one.group in ("thrust", "shaft")]
+    for i, state in enumerate(model.states):
+        _, _, actuator = state.name.partition(".")
+        if actuator in motors and model.a[i, i] < 0.0:
+            lags[actuator] = lags.get(actuator, 0.0) - 1.0 / float(model.a[i, i])
+    values["motor_lag"] = max(lags.values(), default=0.0)
+    values["command_delay"] = model.delay
+    return values
 
 
 def sampled_axis_model(inertia: float, damping: float, lag: float, period: float) -> Array:
@@ -33,13 +75,13 @@ def sampled_axis_model(inertia: float, damping: float, lag: float, period: float
         lag: Time constant T of the actuators [s].
         period: Sample time [s].
     """
-    from scipy.linalg import expm
-
-    rates = np.zeros((4, 4))
-    rates[0, 0], rates[0, 2] = -damping / inertia, 1.0 / inertia
-    rates[1, 0] = 1.0
-    rates[2, 2], rates[2, 3] = -1.0 / max(lag, SHORTEST_LAG), 1.0 / max(lag, SHORTEST_LAG)
-    return np.asarray(expm(rates * period))
+    a, b = np.zeros((3, 3)), np.zeros((3, 1))
+    a[0, 0], a[0, 2] = -damping / inertia, 1.0 / inertia
+    a[1, 0] = 1.0
+    a[2, 2], b[2, 0] = -1.0 / max(lag, SHORTEST_LAG), 1.0 / max(lag, SHORTEST_LAG)
+    whole = np.eye(4)
+    whole[:3, :3], whole[:3, 3:] = held_input_matrices(a, b, period)
+    return whole
 
 
 def integral_gains(

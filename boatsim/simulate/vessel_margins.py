@@ -22,14 +22,11 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import load_class, shipped_content_names, snake_case
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.interval_map import PLAY, SUBSTEPS
+from boatsim.simulate.linearisation import LinearVessel, linearise_vessel
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.stepper import State
 
-SUBSTEPS = 8  # integration steps per control period, 10 ms for the joystick controllers
-# [m/s], [rad/s], [N], [rad]: change of a state for its derivative; well below one step of a servo
-# and well above rounding
-STATE_CHANGE = 1e-5
-COMMAND_CHANGE = 1e-4  # of a command's range, for the same reason
 LOWEST = 1e-5  # [rad/s] lowest frequency, below the slowest drift of a boat at rest (0.004 1/s)
 POINTS = 20000  # frequencies of the analysis
 # velocity that a set point demands
@@ -40,8 +37,6 @@ AVERAGED = 20.0  # [s] over which the steady motion is averaged: about ten oscil
 WATCHED = 80.0  # [s] of simulation from which stability is judged: six to forty oscillations
 LARGEST_DELAY = 5.0  # [s] a loop that tolerates more is not limited by delay
 RESOLUTION = 0.005  # of the delay by bisection, a tenth of the agreement asked for
-DELAY = "command_delay"  # effect that enters the linearised loop as a factor of its response
-PLAY = "steering_backlash"  # effect that has no derivative; the linearised loop leaves it out
 
 
 @dataclass(frozen=True)
@@ -61,21 +56,6 @@ class VesselMargin:
         if self.simulated_delay_s == 0.0:
             return 0.0 if self.delay_s == 0.0 else inf
         return self.delay_s / self.simulated_delay_s - 1.0
-
-
-@dataclass(frozen=True)
-class LinearVessel:
-    """Motion of a vessel over one control period with held commands, about a steady motion.
-
-    x(k+1) = A x(k) + B c(k). The state holds velocities, attitude and the actuators' memory.
-    """
-
-    a: Array  # (n, n)
-    b: Array  # (n, commands)
-    commands: tuple[str, ...]
-    outputs: Mapping[str, int]  # velocity or "psi" -> its place in the state
-    delay: float  # [s] of the vessel's own command delay
-    period: float  # [s]
 
 
 def margins_on_vessel(controller: Controller, vessel: Vessel) -> list[VesselMargin]:
@@ -125,65 +105,6 @@ def _margin_at(controller: Any, vessel: Vessel, number: int) -> VesselMargin:
 
 # Linearised loop
 # ------------------------------------------------------------------------------------------------
-
-
-def linearise_vessel(
-    vessel: Vessel, state: State, commands: Mapping[str, float], period: float
-) -> LinearVessel:
-    """Linearise the motion of a vessel over one control period about a steady motion.
-
-    Rate limits act on large motions only and are not part of it.
-
-    Args:
-        vessel: The vessel.
-        state: Steady motion; position and heading do not matter.
-        commands: Commands of the steady motion by channel.
-        period: Control period over which the commands are held [s].
-    """
-    delay = 0.0
-    for effect in vessel.effects:
-        kind = type(effect).type_name()
-        if kind == DELAY:
-            delay += effect.values()[list(type(effect).params()).index("delay")]
-        if kind in (DELAY, PLAY):
-            vessel = vessel.without_effect(effect.name)
-    engine = OpenWater(vessel, period / SUBSTEPS)
-    memory = engine.batch.fleet.memory[0]
-    start = state._replace(t=0.0, x=0.0, y=0.0, psi=0.0)
-    fields = _free_fields(engine)
-
-    def after(change: Array, changed: Mapping[str, float]) -> Array:
-        values = {}
-        for name, by in zip(fields, change, strict=False):
-            values[name] = getattr(start, name) + by
-        engine.reset(start._replace(**values), commands)
-        memory[:] += change[len(fields) :]
-        engine.command({**commands, **changed})
-        engine.advance(SUBSTEPS)
-        end = [getattr(engine.state, name) for name in fields]
-        return np.array([*end, *memory])
-
-    n = len(fields) + len(memory)
-    a = np.empty((n, n))
-    for j in range(n):
-        change = np.zeros(n)
-        change[j] = STATE_CHANGE
-        a[:, j] = (after(change, {}) - after(-change, {})) / (2.0 * STATE_CHANGE)
-    names = tuple(commands)
-    b = np.empty((n, len(names)))
-    for j, name in enumerate(names):
-        channel = vessel.commands[name]
-        by = COMMAND_CHANGE * (channel.high - channel.low)
-        more, less = ({name: commands[name] + sign * by} for sign in (1.0, -1.0))
-        b[:, j] = (after(np.zeros(n), more) - after(np.zeros(n), less)) / (2.0 * by)
-    outputs = {name: fields.index(name) for name in fields}
-    return LinearVessel(a, b, names, outputs, delay, period)
-
-
-def _free_fields(engine: OpenWater) -> list[str]:
-    """Fields of `State` that the vessel's motion depends on or that are measured."""
-    shown = [State._fields[1:][i] for i in engine.code.SHOWS]
-    return [name for name in shown if name not in ("x", "y")]
 
 
 def delay_margin(

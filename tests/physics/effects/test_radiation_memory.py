@@ -199,6 +199,22 @@ def test_response_to_regular_waves_is_that_of_the_frequency_domain(
     assert found[:2] == pytest.approx(expected[:2], rel=0.01)
 
 
+def test_linear_model_has_the_response_of_the_frequency_domain(tmp_path: Path) -> None:
+    """(C + j w K(j w) - w^2 (M + A)) x = F, with the retardation K of the coefficients."""
+    model = boatsim.linearise(boat(tmp_path / "boat", UPRIGHT))
+    assert [one.name for one in model.states[:6]] == ["z", "phi", "theta", "w", "p", "q"]
+    assert model.accuracy < 1e-4
+    own, axes = read_coefficients(OTTER), np.ix_([2, 3, 4], [2, 3, 4])
+    assert own.memory is not None
+    mass, stiff = linear_matrices(UPRIGHT)
+    total = mass + own.infinite_added_mass[axes]
+    for w in (2.0, 5.0, 9.0):
+        retardation = own.memory.response(np.array([w]))[0][axes]
+        expected = np.linalg.inv(stiff + 1j * w * retardation - w * w * total)
+        found = np.linalg.solve(1j * w * np.eye(len(model.a)) - model.a, model.e)[:3]
+        assert found == pytest.approx(expected, abs=2e-5 * np.abs(expected).max())
+
+
 @pytest.mark.slow
 def test_energy_never_grows_in_still_water_over_a_day(tmp_path: Path) -> None:
     vessel = boat(tmp_path / "boat", UPRIGHT)
