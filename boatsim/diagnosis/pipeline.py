@@ -540,7 +540,9 @@ def adopt_refitted_coefficients(
     refitted = ranking.recalibrated
     if not best.effects:
         refitted = best
-    found = decide_recalibration(problem, ranking.nominal, refitted, question.held_out)
+    found = decide_recalibration(
+        problem, ranking.nominal, refitted, question.held_out, is_answer=not best.effects
+    )
     if not best.effects:
         best = found.fit
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)

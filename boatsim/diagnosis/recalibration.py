@@ -1,8 +1,9 @@
 """Decides which refitted coefficients are adopted.
 
-A coefficient that simulations of the recordings do not determine keeps the value of the vessel
-file. No coefficient of the vessel without effects is adopted if free runs over held-out recordings
-are worse with the refitted ones than with those of the file.
+A coefficient that the recordings do not determine keeps the value of the vessel file; in the
+vessel of the answer, free runs have to determine it. No coefficient of the vessel without effects
+is adopted if free runs over held-out recordings are worse with the refitted ones than with those of
+the file.
 """
 
 from collections.abc import Mapping, Sequence
@@ -43,7 +44,11 @@ class Recalibration:
 
 
 def decide_recalibration(
-    problem: Problem, written: Fit, refitted: Fit, held_out: Sequence[MappedRecording]
+    problem: Problem,
+    written: Fit,
+    refitted: Fit,
+    held_out: Sequence[MappedRecording],
+    is_answer: bool = True,
 ) -> Recalibration:
     """Decide which refitted coefficients of a vessel replace the values of its file.
 
@@ -55,8 +60,14 @@ def decide_recalibration(
         written: The vessel model as specified in its file, with its noise levels fitted.
         refitted: The vessel model without candidate effects, its coefficients fitted.
         held_out: Held-out recordings, at least one.
+        is_answer: Whether this vessel is the answer, so that its coefficients must carry over to
+            other manoeuvres and free runs have to determine them. Else it is only what the vessel
+            with effects is compared with, and its posterior suffices.
     """
-    kept = undetermined_by_simulations(problem, refitted)
+    if is_answer:
+        kept = undetermined_by_simulations(problem, refitted)
+    else:
+        kept = undetermined_coefficients(refitted, problem.config.fit)
     names = tuple(f"{refitted.free[i].effect}.{refitted.free[i].name}" for i in kept)
     found = fix_coefficients(problem, refitted, kept)
     horizon = free_run_horizon(problem, held_out)
