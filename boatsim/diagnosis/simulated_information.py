@@ -27,9 +27,10 @@ FITTED, CHANGED = "fitted", "changed"  # the vessels that are compared
 def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
     """Return the covariance of the parameters of a fit, given only free runs over its recordings.
 
-    The prior is combined with the sensitivity of the free runs to each parameter. The errors of a
-    run are nearly one for all its rows, so that each recorded signal of a run counts as a single
-    observation, with the mean square error of the fit as its variance.
+    The prior is combined with the sensitivity of the free runs to each parameter. A recorded signal
+    of a run counts as as many observations as its errors are independent: all rows where only the
+    noise of the instrument is left, a single one where the error grows over the run. Their variance
+    is the mean square error of the fit.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -62,8 +63,29 @@ def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
             for signal in signals:
                 if signal in run.channels["recorded"]:
                     slopes = _slopes(run, others, steps, signal)
-                    information += slopes @ slopes.T / max(slopes.shape[1], 1) / variance
+                    [error] = run.deviations(FITTED, [signal])
+                    count = independent_count(error) / max(slopes.shape[1], 1)
+                    information += count * slopes @ slopes.T / variance
     return np.asarray(np.linalg.inv(information))
+
+
+def independent_count(errors: Array) -> float:
+    """Return the number of independent values among errors, between 1 and their number.
+
+    It is their number over the integrated autocorrelation time, whose sum ends at the first
+    correlation that is not positive (C. J. Geyer, Practical Markov chain Monte Carlo, Statistical
+    Science 1992). The mean is not removed, because an error of one sign is a single value.
+
+    Args:
+        errors: Errors (M,) in the order of time; nan are left out.
+    """
+    known = errors[np.isfinite(errors)]
+    if len(known) < 2 or not known.any():
+        return 1.0
+    correlation = np.correlate(known, known, "full")[len(known) - 1 :]
+    correlation = correlation / correlation[0]
+    positive = int(np.argmax(np.append(correlation, 0.0) <= 0.0))
+    return max(1.0, len(known) / (2.0 * float(correlation[:positive].sum()) - 1.0))
 
 
 def _slopes(run: FreeRun, others: Sequence[FreeRun], steps: Sequence[float], signal: str) -> Array:

@@ -19,6 +19,7 @@ from boatsim.diagnosis.recalibration import (
     undetermined_coefficients,
 )
 from boatsim.diagnosis.search.ranking import fit_baseline
+from boatsim.diagnosis.simulated_information import independent_count
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import load_vessel
@@ -124,6 +125,20 @@ def test_a_boat_that_turns_keeps_none_of_its_damping() -> None:
     refitted = fit_baseline(problem)[1]
     kept = [refitted.free[i].effect for i in undetermined_by_simulations(problem, refitted)]
     assert "linear_damping" not in kept
+
+
+def test_white_errors_are_all_independent_and_a_growing_error_is_one_value() -> None:
+    white = np.random.default_rng(1).standard_normal(2000)
+    assert independent_count(white) == pytest.approx(2000, rel=0.1)
+    assert independent_count(np.linspace(0.0, 1.0, 200)) < 2.0
+    assert independent_count(np.full(50, 0.3)) < 1.1
+    decay = 0.9  # of an autoregressive process: the time of its correlation is (1 + a) / (1 - a)
+    errors = np.zeros(20000)
+    for i, kick in enumerate(np.random.default_rng(2).standard_normal(len(errors) - 1)):
+        errors[i + 1] = decay * errors[i] + kick
+    expected = len(errors) * (1.0 - decay) / (1.0 + decay)
+    assert independent_count(errors) == pytest.approx(expected, rel=0.3)
+    assert independent_count(np.zeros(5)) == independent_count(np.array([np.nan])) == 1.0
 
 
 def test_of_two_coefficients_whose_ratio_alone_is_determined_one_is_kept() -> None:
