@@ -27,10 +27,12 @@ FITTED, CHANGED = "fitted", "changed"  # the vessels that are compared
 def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
     """Return the covariance of the parameters of a fit, given only free runs over its recordings.
 
-    The prior is combined with the sensitivity of the free runs to each parameter. A recorded signal
-    of a run counts as as many observations as its errors are independent: all rows where only the
-    noise of the instrument is left, a single one where the error grows over the run. Their variance
-    is the mean square error of the fit.
+    The prior is combined with the sensitivity of the free runs to each parameter. Each recorded
+    signal of a run counts as a single observation, with the mean square error of the fit as its
+    variance: what disturbs a boat under way also moves the state in which a run starts, so that
+    more rows do not tell more of what the commands do. A body without commands is excited by
+    nothing but its first state, and a signal counts as as many observations as its errors are
+    independent.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -53,6 +55,7 @@ def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
         changed.append(free_runs(problem, {CHANGED: model}, problem.recordings, horizon))
         steps.append(step)
     information = np.diag(1.0 / prior.sd**2)
+    commanded = bool(problem.program.vessel.commands)
     for signals in FAMILIES.values():
         errors = [error for run in runs for error in run.deviations(FITTED, signals)]
         variance = mean_square(errors) if errors else np.nan
@@ -64,8 +67,9 @@ def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
                 if signal in run.channels["recorded"]:
                     slopes = _slopes(run, others, steps, signal)
                     [error] = run.deviations(FITTED, [signal])
-                    count = independent_count(error) / max(slopes.shape[1], 1)
-                    information += count * slopes @ slopes.T / variance
+                    count = 1.0 if commanded else independent_count(error)
+                    rows = max(slopes.shape[1], 1)
+                    information += count / rows * slopes @ slopes.T / variance
     return np.asarray(np.linalg.inv(information))
 
 
