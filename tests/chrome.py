@@ -62,15 +62,19 @@ class Page:
             time.sleep(0.02)
         return found
 
-    def picture(self, path: Path, wide: int, high: int, dark: bool = False) -> None:
-        """What it looks like, as PNG."""
+    def resize(self, wide: int, high: int, mobile: bool = False) -> None:
+        """Give it the screen of a computer, or of a phone."""
         self.say(
             "Emulation.setDeviceMetricsOverride",
             width=wide,
             height=high,
             deviceScaleFactor=1,
-            mobile=False,
+            mobile=mobile,
         )
+
+    def picture(self, path: Path, wide: int, high: int, dark: bool = False) -> None:
+        """What it looks like, as PNG."""
+        self.resize(wide, high)
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.say("Emulation.setEmulatedMedia", features=scheme)
         time.sleep(0.3)

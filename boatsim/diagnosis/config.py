@@ -1435,9 +1435,9 @@ class FitConfig:
     undetermined_sd: float = setting(
         0.7,
         "prior sd",
-        "A coefficient with a larger posterior sd, given free runs over the recordings, keeps the "
-        "value of the vessel file: they then say less about it than the prior does, because "
-        "precisions add up and 0.7 is the root of one half.",
+        "A coefficient with a larger posterior sd keeps the value of the vessel file: the "
+        "recordings, or in the vessel of the answer free runs over them, then say less about it "
+        "than the prior does, because precisions add up and 0.7 is the root of one half.",
         0.0,
         1.0,
     )
@@ -2190,7 +2190,9 @@ class ValidateConfig:
         1.5,
         "1",
         "Ratio of rms errors of free runs above which a model harms a group of recordings. An "
-        "effect that helps on the whole may be wrong in a group that has few of the runs.",
+        "effect that helps on the whole may be wrong in a group that has few of the runs. "
+        "Coefficients keep the value of the vessel file only up to this ratio over all held-out "
+        "recordings.",
         low=1.0,
     )
     alone_share: float = setting(

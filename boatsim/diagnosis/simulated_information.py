@@ -1,4 +1,4 @@
-"""What simulations of the recordings tell about the parameters of a fit.
+"""Information of free runs over the recordings about the parameters of a fit.
 
 The Kalman filter learns a parameter also from motions that nothing known causes: a boat that never
 turns still sways a little, and the filter reads mass and damping in sway from that. Such values
@@ -29,10 +29,10 @@ def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
 
     The prior is combined with the sensitivity of the free runs to each parameter. Each recorded
     signal of a run counts as a single observation, with the mean square error of the fit as its
-    variance: what disturbs a boat under way also moves the state in which a run starts, so that
-    more rows do not tell more of what the commands do. A body without commands is excited by
-    nothing but its first state, and a signal counts as as many observations as its errors are
-    independent.
+    variance: the disturbance of a boat under way also changes the state in which a run starts, so
+    that more rows give no more information on the response to commands. A body without commands is
+    excited by its first state alone, and a signal counts as many times as it has independent
+    errors.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.

@@ -593,13 +593,7 @@ def page_server() -> Iterator[Server]:
 
 def phone(page: chrome.Page) -> None:
     """The screen of a phone held upright."""
-    page.say(
-        "Emulation.setDeviceMetricsOverride",
-        width=390,
-        height=844,
-        deviceScaleFactor=1,
-        mobile=True,
-    )
+    page.resize(390, 844, mobile=True)
 
 
 def test_while_the_boat_is_compiled_the_page_shows_it_and_takes_no_sticks(

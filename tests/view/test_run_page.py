@@ -253,13 +253,7 @@ def test_the_replay_is_on_a_phones_first_screen_and_moves_the_boat_and_the_curso
     folder, _ = berth
     with chrome.chromium() as opened:
         page = opened((folder / "report.html").as_uri(), "")
-        page.say(
-            "Emulation.setDeviceMetricsOverride",
-            width=390,
-            height=844,
-            deviceScaleFactor=1,
-            mobile=True,
-        )
+        page.resize(390, 844, mobile=True)
         box = "document.querySelector('.replay .controls').getBoundingClientRect()"
         assert page.run(f"{box}.bottom") < 844 and page.run("document.body.scrollWidth") <= 390
         top = "document.querySelector('{}').getBoundingClientRect().top"

@@ -220,13 +220,7 @@ def test_the_page_obeys_its_content_security_policy(made: Made, page: Any) -> No
 @pytest.mark.slow
 def test_the_page_fits_a_phone_and_labels_its_controls(page: Any) -> None:
     for wide in (360, 390):
-        page.say(
-            "Emulation.setDeviceMetricsOverride",
-            width=wide,
-            height=844,
-            deviceScaleFactor=1,
-            mobile=True,
-        )
+        page.resize(wide, 844, mobile=True)
         page.run(f"{PAGE}.querySelectorAll('details').forEach(d => d.open = true)")
         assert page.run("document.documentElement.scrollWidth") <= wide
         inside = f"[...{PAGE}.querySelectorAll('button, input, select, canvas, output')]"
