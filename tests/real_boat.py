@@ -56,6 +56,7 @@ class Real:
     # [s] until thrust is at 63 % of a step: a quarter more from rest, less of a small one
     lag: float = 0.0
     dead: float = 0.0  # [N] of command that friction takes
+    throttle: bool = False  # commands set the revolutions, whose square is the thrust
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
     walk: float = 0.0  # side force per thrust astern
     cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
@@ -175,6 +176,8 @@ def wanted(command: Array, real: Real) -> Array:
     """Thrusts that motors aim at: friction fades in, and what one has more or less than stated
     grows with its load."""
     free = command - real.dead * np.tanh(command / real.dead) if real.dead else command
+    if real.throttle:
+        free = free * abs(free)  # full thrust is 1 N
     return np.asarray(free * (1.0 + (np.array(real.power) - 1.0) * (0.6 + 0.6 * abs(command))))
 
 

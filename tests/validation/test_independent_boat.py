@@ -36,6 +36,7 @@ CASES = (
     ),  # it ebbs
     Case("thrust_lag", Real(lag=0.45), {"time_constant_s": 0.45}, more=True),
     Case("thrust_deadband", Real(dead=0.12), {"width_N": 0.12}),
+    Case("thrust_exponent", Real(throttle=True), {"exponent": 2.0}),
     Case("thrust_imbalance", Real(power=(1.15, 0.85)), {"fraction": 0.15}),
     Case("thrust_gain_error", Real(power=(0.7, 0.7)), {"factor": 0.7}),
     Case("steering_offset", Real(bent=(0.1, -0.06)), {"port_rad": 0.1, "starboard_rad": -0.06}),

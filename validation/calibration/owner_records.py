@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from validation.owner_logs.judge import right_names
-
 Record = dict[str, Any]
 
 
@@ -27,7 +25,7 @@ def owner_records(folder: Path) -> Iterator[Record]:
         yield {
             "trial": f"{folder.name}/{case.name}",
             "kind": "owner",
-            "causes": sorted(right_names(result["cause"], result["fault"])),
+            "causes": result["right"],
             "equivalent": {},
             "signs": answer["signs"],
         }

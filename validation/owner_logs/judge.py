@@ -26,6 +26,9 @@ HALF = 0.5  # goal: error relative to the vessel from particulars
 PLAIN_SIGHT = 4.0  # sd of a fix; a smaller error of that vessel leaves nothing to improve
 # every simulated gyro has an offset, and every antenna is off the mass centre
 TRUE_OF_INSTRUMENTS = ("yaw_rate_offset", "position_frame_error")
+# power of the command that the revolutions are where thrust is proportional to it, as the vessel
+# from particulars assumes
+PROPORTIONAL = 0.5
 LIMITS = {"never_turned": "turn", "saturated": "full|limit|saturat|highest", "one_speed": "speed"}
 
 
@@ -49,7 +52,8 @@ class Result:
     accused: bool = False  # false alarm on a good log
     verdict: str = ""
     effects: list[str] = field(default_factory=list)
-    false_names: int = 0  # effects that are neither the cause nor the fault, nor tied with them
+    right: list[str] = field(default_factory=list)  # names of effects that are true of the case
+    false_names: int = 0  # effects that are not true of the case, nor tied with one that is
     first_named: bool | None = None  # whether the first effect is the cause
     physics_named: bool | None = None
     called_physics: bool | None = None
@@ -65,18 +69,15 @@ class Result:
         return self.answer_m / self.nominal_m
 
 
-def right_names(cause: str, fault: str) -> set[str]:
-    """Return the names of effects that are true of a case.
-
-    Args:
-        cause: Its physical cause; "" for none.
-        fault: The fault of its log; "" for none.
-    """
+def right_names(case: Case) -> set[str]:
+    """Return the names of effects that are true of a case."""
     names = set(TRUE_OF_INSTRUMENTS)
-    if cause:
-        names.update(CAUSES[cause].named)
-    if fault:
-        names.update(FAULTS[fault].named, FAULTS[fault].entries)
+    if case.boat.curve != PROPORTIONAL:
+        names.add("thrust_exponent")
+    if case.cause:
+        names.update(CAUSES[case.cause].named)
+    if case.fault:
+        names.update(FAULTS[case.fault].named, FAULTS[case.fault].entries)
     return names
 
 
@@ -199,7 +200,8 @@ class Judge:
         r.effects = [
             n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
         ]
-        right = right_names(self.case.cause, self.case.fault)
+        right = right_names(self.case)
+        r.right = sorted(right)
         meant = [{e["name"], *e["tied_with"]} for e in answer["effects"]]
         r.false_names = sum(not names & right for names in meant)
         if self.case.cause:

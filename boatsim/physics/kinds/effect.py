@@ -428,6 +428,12 @@ class Boat(Protocol):
     def names_of(self, name: str) -> list[str]:
         """Return the names of all effects of the vessel that have a given name or type."""
 
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """Return the allowed range (low, high) of each input of the vessel, by name."""
+
+    def target_actuators(self, effect: Effect) -> tuple[str, ...]:
+        """Return the actuators whose signals a channel effect changes."""
+
 
 class LawCall(NamedTuple):
     """Source text with which a generated program calls the compiled law of one effect.

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import inf
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.kinds.channel import ChannelEffect
@@ -286,6 +287,14 @@ class ChannelBindings:
         """Return the other effects at which an effect acts, such as the propellers of prop walk."""
         carriers = self.effects_of_type(type(effect).per_instance_of)
         return [e for e in carriers if not effect.on or e.name in effect.on]
+
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """Return the allowed range (low, high) of each input of the vessel, by name.
+
+        The range of a measured channel is unbounded.
+        """
+        limits = {name: (channel.low, channel.high) for name, channel in self.commands.items()}
+        return limits | dict.fromkeys(self.measured, (-inf, inf))
 
     def target_actuators(self, effect: Effect) -> tuple[str, ...]:
         """Return the actuators whose signals a channel effect (such as a rate limit) changes.

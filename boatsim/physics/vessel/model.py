@@ -460,14 +460,6 @@ class Vessel(ChannelBindings):
         """Whether the vessel may roll to any angle, because an effect of it holds there."""
         return any(type(effect).turns_over for effect in self.effects)
 
-    def limits(self) -> dict[str, tuple[float, float]]:
-        """Return the allowed range (low, high) of each input of the vessel, by name.
-
-        The range of a measured channel is unbounded.
-        """
-        limits = {name: (channel.low, channel.high) for name, channel in self.commands.items()}
-        return limits | dict.fromkeys(self.measured, (-inf, inf))
-
     def recorded_limits(self) -> dict[str, tuple[float, float]]:
         """Return the range (low, high) within which a recording may have each input, by name.
 
