@@ -1089,7 +1089,10 @@ class ChecksConfig:
         0.05, "nats", "The same for each row: small errors of a model add up in a long log."
     )
     compare_min_lead: float = setting(
-        25.0, "nats", "Lead in evidence over the log as recorded and over all rivals."
+        25.0,
+        "nats",
+        "Lead in evidence over the log as recorded, and over reinterpretations that are not "
+        "mentioned as alternatives.",
     )
     compare_tie_gain: float = setting(
         3.0,

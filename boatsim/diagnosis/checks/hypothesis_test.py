@@ -232,7 +232,7 @@ def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Fi
 def _best_finding(
     recordings: list[Recording], comparison: Comparison
 ) -> tuple[Finding | None, list[Finding]]:
-    """The finding for the best reinterpretation, if it is clearly better than all others.
+    """The finding for the best reinterpretation, if it is clearly better than the log as recorded.
 
     The second result holds remarks on what could not be fitted.
     """
@@ -262,14 +262,21 @@ def _clear_finding(
     recordings: list[Recording],
     comparison: Comparison,
 ) -> Finding | None:
-    """The finding for the best of some fitted reinterpretations, if it is clearly better."""
+    """The finding for the best of some fitted reinterpretations, if it is clearly better.
+
+    It must be better than the log as recorded. Other reinterpretations that fit about as well are
+    its alternatives.
+    """
     config = comparison.config
     best = max(score.evidence for _, score in scored)
-    ties = []
+    ties, rivals = [], []
     second = recorded.evidence
     for candidate, score in _without_near_rotations(scored, config):
-        if best - score.evidence < config.compare_tie_gain:
+        behind = best - score.evidence
+        if behind < config.compare_tie_gain:
             ties.append((candidate, score))
+        elif behind < config.compare_min_lead:
+            rivals.append((candidate, score))
         else:
             second = max(second, score.evidence)
     rows = sum(map(len, recordings))
@@ -293,6 +300,10 @@ def _clear_finding(
         evidence.append(
             f". Because this boat is symmetric, another fault fits equally well: {others[0][0]}"
         )
+    rivals.sort(key=lambda each: -each[1].evidence)
+    if rivals and not others:
+        evidence.append(f". Another fault fits almost as well: {rivals[0][0].words}")
+    others += [(candidate.words, candidate.changes) for candidate, _ in rivals]
     lead = min(best - second, MAX_LEAD)
     return Finding(
         chosen.name,

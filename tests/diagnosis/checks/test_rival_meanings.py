@@ -1,0 +1,54 @@
+"""Reinterpretations of a log that fit about as well as the best one are its alternatives."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from boatsim.diagnosis.checks.finding import Finding, scaling_corrections
+from boatsim.diagnosis.checks.hypothesis_test import Score, _clear_finding
+from boatsim.diagnosis.checks.reinterpretations import Reinterpretation
+from boatsim.diagnosis.config import DEFAULT
+
+ROWS = 100
+
+
+def meaning(name: str, column: str) -> Reinterpretation:
+    return Reinterpretation(name, f"{column} is reversed", scaling_corrections([column], -1.0))
+
+
+def finding(**evidence: float) -> Finding | None:
+    """The finding where reversed columns have this evidence, and the log as recorded has 0 nats."""
+    scored = [(meaning(name, name), Score(value, 0.1)) for name, value in evidence.items()]
+    program = SimpleNamespace(vessel=SimpleNamespace(name="boat"))
+    comparison: Any = SimpleNamespace(
+        config=DEFAULT.checks, problem=SimpleNamespace(program=program)
+    )
+    recordings: Any = [range(ROWS)]
+    return _clear_finding(scored, Score(0.0, 0.5), recordings, comparison)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "chosen", "others", "words"),
+    [
+        # equally good ones keep their order, and rivals follow by evidence
+        ({"r": 99.0, "y": 100.0}, "r", ["y"], "equally well: y is reversed"),
+        ({"r": 90.0, "y": 100.0}, "y", ["r"], "almost as well: r is reversed"),
+        ({"r": 90.0, "v": 95.0, "y": 100.0}, "y", ["v", "r"], "almost as well: v is reversed"),
+        ({"r": 70.0, "y": 100.0}, "y", [], ""),
+    ],
+)
+def test_rivals_are_alternatives(
+    evidence: dict[str, float], chosen: str, others: list[str], words: str
+) -> None:
+    found = finding(**evidence)
+    assert found is not None and found.name == chosen
+    assert [alternative for alternative, _ in found.alternatives] == [
+        f"{name} is reversed" for name in others
+    ]
+    assert words in found.evidence
+    assert bool(others) == ("Another fault" in found.evidence or "another fault" in found.evidence)
+
+
+def test_a_small_gain_over_the_log_as_recorded_is_no_finding() -> None:
+    assert finding(r=DEFAULT.checks.compare_min_gain - 1.0) is None
