@@ -1,7 +1,7 @@
 """A diagnosis of recordings made in a test, and what must be said of it where the truth is
 known."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,20 +27,24 @@ def diagnosed(
 
 
 def named(
-    answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False
+    answer: Mapping[str, Any],
+    name: str,
+    true: Mapping[str, float],
+    more: bool = False,
+    also: Collection[str] = (),
 ) -> None:
     """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30
     %.
 
-    With `more` there is a force besides that is no effect's, and the answer must say so.
+    With `more` there is a force besides that is no effect's, and the answer must say so. Effects
+    of `also` may be named, too.
     """
-    assert [e["name"] for e in answer["effects"]] == [name] and not answer["effects"][0][
-        "tied_with"
-    ]
+    entries = {e["name"]: e for e in answer["effects"]}
+    assert {name} <= set(entries) <= {name, *also} and not entries[name]["tied_with"]
     assert answer["unknown"]["flag"] == more and (more or answer["verdict"] == "named"), answer[
         "sentence"
     ]
-    found = answer["effects"][0]["parameters"]
+    found = entries[name]["parameters"]
     for key, value in true.items():
         assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (
             key,

@@ -107,6 +107,11 @@ def wandering(run: Recording, sd: float, time: float, seed: int) -> Recording:
     return replace(run, signals=signals)
 
 
+def also_true(power: float) -> tuple[str, ...]:
+    """Effects that the boat has besides: its loss of thrust grows with the load."""
+    return ("thrust_exponent",) if power != 1.0 else ()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("power", "names"),
@@ -121,7 +126,8 @@ def test_wander_is_named_as_such_and_physics_beside_it(
     )
     said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
     found = {e["name"]: e["parameters"] for e in said["effects"]}
-    assert sorted(found) == names and said["verdict"] == "named", said["sentence"]
+    assert set(names) <= set(found) <= {*names, *also_true(power)}, said["sentence"]
+    assert said["verdict"] == "named", said["sentence"]
     assert 0.05 < found["position_wander"]["position_m"]["value"] < 0.3
     if power < 1.0:
         factor = found["thrust_gain_error"]["factor"]
@@ -141,9 +147,9 @@ def test_a_stated_wander_is_known_from_the_start(tmp_path: Path) -> None:
     facts = "position_wander_sd_m = 0.1\nposition_wander_time_s = 20.0\n"
     (tmp_path / "recording.toml").write_text(f'vessel = "trial_boat"\n[facts]\n{facts}')
     said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
-    assert [e["name"] for e in said["effects"]] == ["thrust_gain_error"] and said[
-        "verdict"
-    ] == "named"
+    found = {e["name"] for e in said["effects"]}
+    assert {"thrust_gain_error"} <= found <= {"thrust_gain_error", *also_true(0.7)}
+    assert said["verdict"] == "named"
     assert said["facts"]["position_wander_sd_m"] == 0.1
 
 

@@ -28,6 +28,7 @@ class Case:
     hold: int = 5
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m], [m], [rad]
     more: bool = False  # the boat's law differs from the entry's by more than the tolerated force
+    also: tuple[str, ...] = ()  # entries that its law contains besides
 
 
 CASES = (
@@ -38,7 +39,8 @@ CASES = (
     Case("thrust_deadband", Real(dead=0.12), {"width_N": 0.12}),
     Case("thrust_exponent", Real(throttle=True), {"exponent": 2.0}),
     Case("thrust_imbalance", Real(power=(1.15, 0.85)), {"fraction": 0.15}),
-    Case("thrust_gain_error", Real(power=(0.7, 0.7)), {"factor": 0.7}),
+    # the loss grows with the load
+    Case("thrust_gain_error", Real(power=(0.7, 0.7)), {"factor": 0.7}, also=("thrust_exponent",)),
     Case("steering_offset", Real(bent=(0.1, -0.06)), {"port_rad": 0.1, "starboard_rad": -0.06}),
     Case("prop_walk", Real(walk=0.15), {"side_force_per_thrust": 0.15}),
     Case("lateral_centre_shift", Real(skeg=-0.12), {"shift_m": -0.12}),
@@ -117,7 +119,13 @@ def marked(case: Case) -> Any:
 @pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_an_entry_is_named_with_its_values(tmp_path: Path, case: Case) -> None:
     runs = [recorded(case.real, seed, case.hold, case.start) for seed in (1, 2, 3)]
-    named(diagnosed(runs, tmp_path, "trial_boat", FURTHER), case.entry, case.true, case.more)
+    named(
+        diagnosed(runs, tmp_path, "trial_boat", FURTHER),
+        case.entry,
+        case.true,
+        case.more,
+        case.also,
+    )
 
 
 @pytest.mark.parametrize("entry", [long("current"), long("quadratic_damping"), "wall_effect"])

@@ -22,6 +22,7 @@ from boatsim.recordings.table import Recording
 
 LAG, WIDTH, STEP = 0.8, 0.12, 0.1  # [s] of the boat's own thrust; [N] of the fault; [s] of a row
 STEPS_A_ROW = 10
+LEVELS = (-0.6, -0.45, -0.3, -0.15, 0.0, 0.15, 0.3, 0.45, 0.6)  # [N] of the thrust commands
 DRIVES = ("thrust_port_N", "thrust_starboard_N")
 
 
@@ -39,12 +40,9 @@ def lagging(folder: Path) -> Vessel:
 
 def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
     """Small thrusts ahead and astern in steps of a second, each side for itself; the thrusters
-    turned now and then."""
+    turned now and then. Of two sizes alone, a power of the command would explain the loss, too."""
     rng, each = np.random.default_rng(seed), round(1.0 / STEP)
-    thrust = {
-        n: np.repeat(rng.choice([-0.5, -0.25, 0.0, 0.25, 0.5], rows // each + 1), each)[:rows]
-        for n in DRIVES
-    }
+    thrust = {n: np.repeat(rng.choice(LEVELS, rows // each + 1), each)[:rows] for n in DRIVES}
     turned = np.repeat(rng.uniform(-0.4, 0.4, rows // (3 * each) + 1), 3 * each)[:rows]
     return thrust | {"steer_port_rad": turned, "steer_starboard_rad": turned}
 
