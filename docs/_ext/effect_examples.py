@@ -1,9 +1,9 @@
 """Examples of the effects' reference pages: a program for each effect, and what it prints.
 
 `python docs/_ext/effect_examples.py` runs all of them and writes their output to
-`effect_outputs.toml`; `--check` compares their output with the stored one, as a slow test does;
-the names of effects show and run single examples. Nothing is compiled for these short runs
-(`BOATSIM_DEBUG`).
+`effect_outputs.toml`; `--check` compares their output with the stored one, for all effects or the
+named ones, as slow and long tests do; the names of effects alone show and run single examples.
+Nothing is compiled for these short runs (`BOATSIM_DEBUG`).
 """
 
 import contextlib
@@ -250,12 +250,12 @@ def store_outputs() -> None:
     OUTPUTS.write_text(text, encoding="utf-8")
 
 
-def differences() -> list[str]:
-    """Run all examples and return a description of each that prints something else than stored."""
+def differences(names: Sequence[str]) -> list[str]:
+    """Run examples and return a description of each that prints something else than stored."""
     found = []
     stored = stored_outputs()
     with equal_runs_once():
-        outputs = {name: output(name) for name in sorted(all_cases())}
+        outputs = {name: output(name) for name in sorted(names)}
     for name, text in outputs.items():
         shown, printed = stored.get(name, "").splitlines(), text.splitlines()
         if len(printed) != len(list(filter(None, shown))):
@@ -269,12 +269,12 @@ def main(names: Sequence[str]) -> int:
     """Store the outputs, compare them (`--check`), or show single examples; return the exit code.
 
     Args:
-        names: Names of effects, or `--check`, or nothing.
+        names: Names of effects, or `--check` and perhaps names, or nothing.
     """
     if not names:
         store_outputs()
-    if list(names) == ["--check"]:
-        found = differences()
+    if names and names[0] == "--check":
+        found = differences(names[1:] or all_cases())
         print("\n".join(found))
         return bool(found)
     for name in names:

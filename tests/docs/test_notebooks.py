@@ -2,6 +2,7 @@
 
 import ast
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
@@ -15,6 +16,7 @@ REPLAYS = {  # shown by each
     "3_bring_your_own_log": 1,
     "4_compare_controllers": 0,
 }
+AS_TUTORIALS = {"1_run_a_scenario", "4_compare_controllers"}  # first_steps.md, comparing.md
 MOST_SOURCE = 10_000  # bytes of a notebook without outputs
 MOST_OUTPUT = 600_000  # bytes of one with its figures
 LONGEST = 300  # [s] of a cell on a busy machine
@@ -39,8 +41,14 @@ def test_a_notebook_is_valid_and_small_because_it_has_no_outputs(path):
     assert path.stat().st_size < MOST_SOURCE
 
 
+def running(path: Path) -> Any:
+    """A notebook, among the long tests if a tutorial of the site runs the same commands."""
+    marks = [pytest.mark.long] if path.stem in AS_TUTORIALS else []
+    return pytest.param(path, marks=marks, id=path.stem)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [running(path) for path in NOTEBOOKS])
 def test_a_notebook_runs_from_its_first_to_its_last_cell(path, tmp_path):
     (tmp_path / "examples").mkdir()
     (tmp_path / "tests").symlink_to(ROOT / "tests")

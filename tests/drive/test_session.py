@@ -429,6 +429,7 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_flood_of_connections_without_file_descriptors_costs_neither_driver_nor_log(
     tmp_path: Path,
 ) -> None:
@@ -637,6 +638,7 @@ def test_on_a_phone_water_sticks_and_the_button_are_on_the_first_screen(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_page_closed_before_the_sticks_were_moved_ends_the_run_and_leaves_nothing(
     opened, tmp_path: Path
 ) -> None:

@@ -229,6 +229,7 @@ def test_shares_count_visible_causes_apart_from_those_that_can_not_be_told() -> 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_what_is_concealed_in_a_release_is_named_with_its_size(tmp_path: Path) -> None:
     study = next(s for s in STUDIES if s.name == "roll_at_rest")
     patched = PatchedVesselStudy(study, tmp_path)

@@ -88,6 +88,7 @@ def test_drag_that_dies_out_far_faster_than_at_rest_is_followed_and_named(tmp_pa
     assert surge == pytest.approx(0.2 * 450.0, abs=max(3.0 * sd, 2.0))
 
 
+@pytest.mark.long
 def test_turn_asymmetry_is_named_as_offset_and_asymmetry(tmp_path: Path) -> None:
     found = answer(
         steered, Craft(bias=np.radians(1.0), starboard=1.1, blunt=True), tmp_path, "jet_ski"

@@ -88,6 +88,7 @@ def test_another_time_constant_astern_is_named(tmp_path: Path) -> None:
     assert effects["astern_time_constant"]["factor"]["value"] == pytest.approx(1.2 / 1.67, abs=0.06)
 
 
+@pytest.mark.long
 def test_waves_are_not_taken_for_a_disturbance(tmp_path: Path) -> None:
     found = diagnosed(tmp_path, Real(sea=0.054))
     assert set(named(found)) == {"wave_forcing"}
