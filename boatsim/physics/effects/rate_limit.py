@@ -9,6 +9,7 @@ from numba import njit
 from boatsim.physics.base import (
     Array,
     ChannelEffect,
+    ParameterChanges,
     SignalSegment,
     longest_lag_step,
     param,
@@ -119,6 +120,17 @@ class RateLimit(ChannelEffect):
     )
 
 
+# Fit of a rate of turn [rad/s]
+ANGLE_RATE: ParameterChanges = {
+    "low": 0.0005,
+    "high": INSTANT,
+    "unit": "rad/s",
+    "spread": 2.0,
+    "inactive_value": INSTANT,
+    "usual": USUAL,
+}
+ANGLE_STARTS = ({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2})
+
 SteeringRateLimit = preset_effect(
     RateLimit,
     "SteeringRateLimit",
@@ -128,17 +140,9 @@ SteeringRateLimit = preset_effect(
     acts_on="angle",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
+    starts=ANGLE_STARTS,
     frees={
-        "rate": {
-            "low": 0.0005,
-            "high": INSTANT,
-            "unit": "rad/s",
-            "words": "largest rate of turn of the steering",
-            "spread": 2.0,
-            "inactive_value": INSTANT,
-            "usual": USUAL,
-        },
+        "rate": {**ANGLE_RATE, "words": "largest rate of turn of the steering"},
         "lag": {"spread": 0.3},
     },
     fixed={"instant": INSTANT},
@@ -176,17 +180,9 @@ AzimuthRateLimit = preset_effect(
     once_per="actuator",
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
-    starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
+    starts=ANGLE_STARTS,
     frees={
-        "rate": {
-            "low": 0.0005,
-            "high": INSTANT,
-            "unit": "rad/s",
-            "words": "largest rate of turn of this drive",
-            "spread": 2.0,
-            "inactive_value": INSTANT,
-            "usual": USUAL,
-        },
+        "rate": {**ANGLE_RATE, "words": "largest rate of turn of this drive"},
     },
     fixed={"instant": INSTANT},
 )
