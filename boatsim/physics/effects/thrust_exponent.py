@@ -17,13 +17,14 @@ def apply_exponent(x: float, q: Any) -> float:
 
     Args:
         x: Thrust command [N].
-        q: Parameters with `exponent`, and with the full thrusts `full_ahead` and `full_astern` [N].
+        q: Parameters with `exponent`, and with the full thrusts `full_ahead` and `full_astern` [N];
+            a command in a direction without a full thrust is returned unchanged.
     """
-    if x == 0.0:
-        return 0.0
-    if x > 0.0:
-        return float(q.full_ahead * (x / q.full_ahead) ** q.exponent)
-    return float(-q.full_astern * (-x / q.full_astern) ** q.exponent)
+    full = q.full_ahead if x > 0.0 else q.full_astern
+    if x == 0.0 or not full > 0.0:
+        return x
+    share = (abs(x) / full) ** q.exponent
+    return full * share if x > 0.0 else -full * share
 
 
 @njit(inline="always")
@@ -74,7 +75,6 @@ class ThrustExponent(ChannelEffect):
         "grows with the square of the revolutions"
     )
     acts_on: ClassVar[str] = "thrust"
-    refines: ClassVar[str] = "thrust"
     stage: ClassVar[int] = COMMANDS
     transform_signal: ClassVar = transform_signal
 

@@ -272,7 +272,10 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
         for i in range(n):
             F[i, j] = F[j, i] = 0.0
         F[j, j] = exp(-h / noise.instrument_drift.time)
-    propagate_covariance(F, P, work, n)
+    if n == LASTING:
+        propagate_covariance(F, P, work, LASTING)
+    else:
+        propagate_covariance(F, P, work, n)
     add_process_noise(h, noise, P, F)
 
 
