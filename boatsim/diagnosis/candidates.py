@@ -310,6 +310,8 @@ def missing_requirements(
         return str(error).removeprefix(f"{vessel.name}: ")
     if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):
         return "no command is negative"
+    if isinstance(found, ChannelEffect) and found.limits_differ and _is_symmetric(vessel, found):
+        return "the limits of the commands are the same ahead and astern"
     if isinstance(found, ChannelEffect) and not vessel.target_actuators(found):
         return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
     if isinstance(found, CoefficientRelease) and all(
@@ -323,6 +325,12 @@ def _is_one_way(vessel: Vessel, effect: ChannelEffect) -> bool:
     """Whether all drives on which an effect acts push in one direction only."""
     targets = [vessel.commands.get(name) for name in vessel.target_actuators(effect)]
     return bool(targets) and all(c is not None and c.low >= 0.0 for c in targets)
+
+
+def _is_symmetric(vessel: Vessel, effect: ChannelEffect) -> bool:
+    """Whether the drives on which an effect acts have the same limits ahead and astern."""
+    ahead, astern = effect.largest_commands(vessel)
+    return ahead == astern
 
 
 def instantiate_candidate(

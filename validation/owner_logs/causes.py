@@ -118,7 +118,15 @@ CAUSES: dict[str, Cause] = {
     "lag": Cause(lag, ("thrust_lag", "command_delay")),
     "delay": Cause(delay, ("command_delay", "thrust_lag")),
     "dead band": Cause(
-        dead_band, ("thrust_deadband", "drive_map", "shaft_deadband", "pulse_thrust", "pwm_thrust")
+        dead_band,
+        (
+            "command_deadband",
+            "thrust_deadband",
+            "drive_map",
+            "shaft_deadband",
+            "pulse_thrust",
+            "pwm_thrust",
+        ),
     ),
     "steering offset": Cause(steering_offset, ("steering_offset",), _steers),
     "slow helm": Cause(slow_helm, ("rate_limit", "steering_rate_limit", "servo"), _steers),

@@ -1,7 +1,6 @@
 """Thrust exponent: thrust that grows with a power of the command, full thrust being unchanged."""
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any, ClassVar
 
 from numba import njit
@@ -21,7 +20,7 @@ def apply_exponent(x: float, q: Any) -> float:
             a command in a direction without a full thrust is returned unchanged.
     """
     full = q.full_ahead if x > 0.0 else q.full_astern
-    if x == 0.0 or not full > 0.0:
+    if x == 0.0 or q.exponent == 1.0 or not full > 0.0:
         return x
     share = (abs(x) / full) ** q.exponent
     return full * share if x > 0.0 else -full * share
@@ -97,14 +96,5 @@ class ThrustExponent(ChannelEffect):
         Args:
             vessel: Vessel on which the effect acts.
         """
-        limits = vessel.limits()
-        ahead, astern = 0.0, 0.0
-        for name in vessel.target_actuators(self):
-            low, high = limits[name]
-            if isfinite(high):
-                ahead = max(ahead, high)
-            if isfinite(low):
-                astern = max(astern, -low)
-        # a drive that pushes in one direction only, or without limits
-        largest = max(ahead, astern) or 1.0
-        return {"full_ahead": ahead or largest, "full_astern": astern or largest}
+        ahead, astern = self.largest_commands(vessel)
+        return {"full_ahead": ahead, "full_astern": astern}

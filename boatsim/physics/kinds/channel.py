@@ -2,10 +2,17 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import ClassVar
 
 from boatsim.errors import BadInput
-from boatsim.physics.kinds.effect import EffectKind, InsertionPoint, ProgramFunction, ProgramLayout
+from boatsim.physics.kinds.effect import (
+    Boat,
+    EffectKind,
+    InsertionPoint,
+    ProgramFunction,
+    ProgramLayout,
+)
 from boatsim.physics.signals import SignalSegment
 
 WHOLE = "*"  # channel of the insertion point after those of all actuators
@@ -126,6 +133,8 @@ class ChannelEffect(EffectKind):
     either_side: ClassVar[bool] = False
     # whether it changes nothing of a drive that pushes in one direction only
     acts_astern: ClassVar[bool] = False
+    # whether it differs from another effect only if the limits ahead and astern are not the same
+    limits_differ: ClassVar[bool] = False
     time_to_discontinuity: ClassVar[Callable[..., float] | None] = None
     present_output: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., SignalSegment]]
@@ -159,6 +168,26 @@ class ChannelEffect(EffectKind):
         if not self.other_side:
             return type(self).stage
         return DEEDS if type(self).stage < 0 else COMMANDS
+
+    def largest_commands(self, vessel: Boat) -> tuple[float, float]:
+        """Return the largest commands, ahead and astern, of the actuators on which it acts.
+
+        Both are positive, in the unit of the command. Where actuators act in one direction only,
+        the largest command of that direction is returned for both; 1 where there are no limits.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        limits = vessel.limits()
+        ahead, astern = 0.0, 0.0
+        for name in vessel.target_actuators(self):
+            low, high = limits[name]
+            if isfinite(high):
+                ahead = max(ahead, high)
+            if isfinite(low):
+                astern = max(astern, -low)
+        largest = max(ahead, astern) or 1.0
+        return ahead or largest, astern or largest
 
     @classmethod
     def program_lines(
