@@ -133,7 +133,7 @@ def test_white_errors_are_all_independent_and_a_growing_error_is_one_value() -> 
     assert independent_count(np.linspace(0.0, 1.0, 200)) < 2.0
     assert independent_count(np.full(50, 0.3)) < 1.1
     decay = 0.9  # of an autoregressive process: the time of its correlation is (1 + a) / (1 - a)
-    errors = np.zeros(20000)
+    errors = np.zeros(8000)
     for i, kick in enumerate(np.random.default_rng(2).standard_normal(len(errors) - 1)):
         errors[i + 1] = decay * errors[i] + kick
     expected = len(errors) * (1.0 - decay) / (1.0 + decay)

@@ -1,6 +1,7 @@
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from math import cos, degrees, nan, pi, radians, sin
 from typing import Any
 
@@ -393,9 +394,15 @@ def test_saturation_does_not_wind_the_pid_up() -> None:
     assert answers[-1]["pwm_port"] < 0
 
 
+@cache
+def margins_of(controller: Any) -> Any:
+    """Margins of the loops of a controller with its usual settings, computed once."""
+    return stability_margins(controller())
+
+
 @RIVALS
 def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
-    rows = stability_margins(controller())
+    rows = margins_of(controller)
     assert {row.channel for row in rows} == {"yaw", "surge"}
     assert all(row.stable and row.delay_s > 0.16 for row in rows)
 
@@ -412,7 +419,7 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
 def test_every_channel_meets_the_l1_condition_for_every_input_gain(
     name: str, channels: set[str]
 ) -> None:
-    rows = stability_margins(load_class("controller", name)())
+    rows = margins_of(load_class("controller", name))
     assert {row.channel for row in rows} == channels
     assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
 
