@@ -22,7 +22,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--out", type=Path, required=True, help="folder of the records")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        required=True,
+        help="folder of the records; with --tables also a file written by --pack",
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -32,6 +37,7 @@ def main() -> None:
         help="with a disturbance that is larger than usual and not stated, and laws with errors",
     )
     parser.add_argument("--tables", action="store_true", help="only print the tables")
+    parser.add_argument("--pack", type=Path, help="write all records into this compressed file")
     parser.add_argument(
         "--weights", action="store_true", help="print the weights of the signs that fit best"
     )
@@ -55,6 +61,8 @@ def main() -> None:
     args = parser.parse_args()
     if not args.tables:
         campaign.run(args.out, args.seed, args.trials, args.jobs, args.unstated)
+    if args.pack:
+        campaign.pack(args.out, args.pack)
     records = list(campaign.records(args.out, args.beside_unknown))
     table.print_tables(records)
     if args.weights:

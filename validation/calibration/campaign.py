@@ -1,5 +1,6 @@
 """The trials of a campaign: specified by seed and number, made, diagnosed, and recorded as JSON."""
 
+import gzip
 import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -47,6 +48,7 @@ SLOW = {"otter": 0.12, "mariner": 0.6}
 # outside the library, as every model of a real boat has errors of form
 STRONGEST_DISTURBANCE = 10.0
 MOST_BACKGROUND = 2
+RECORD_FILES = "[SU]*_T*.json"
 
 Record = dict[str, Any]
 
@@ -140,19 +142,39 @@ def record_file(out: Path, job: Job) -> Path:
 
 
 def records(out: Path, odds_beside_unknown: float | None = None) -> Iterator[Record]:
-    """Yield the recorded diagnoses of a folder in order of their names.
+    """Yield recorded diagnoses in the order of their trials.
 
     Args:
-        out: The folder.
+        out: Folder of the records, or a file that `pack` wrote.
         odds_beside_unknown: Log odds added beside an unknown cause; None: those in use. Records are
             decided by it again, so that another value needs no new campaign.
     """
     config = DEFAULT.decide
     if odds_beside_unknown is not None:
         config = replace(config, odds_beside_unknown=odds_beside_unknown)
-    for file in sorted(out.glob("[SU]*_T*.json")):
-        for found in json.loads(file.read_text()):
-            yield decided_again(found, config)
+    for found in _recorded(out):
+        yield decided_again(found, config)
+
+
+def _recorded(out: Path) -> Iterator[Record]:
+    """Yield diagnoses as they were recorded."""
+    if out.is_file():
+        with gzip.open(out, "rt", encoding="utf-8") as lines:
+            yield from map(json.loads, lines)
+        return
+    for file in sorted(out.glob(RECORD_FILES)):
+        yield from json.loads(file.read_text())
+
+
+def pack(out: Path, packed: Path) -> None:
+    """Write the recorded diagnoses of a folder into one compressed file, one in each line.
+
+    Args:
+        out: The folder.
+        packed: The file, whose content depends on the records alone.
+    """
+    lines = [json.dumps(found) + "\n" for found in _recorded(out)]
+    packed.write_bytes(gzip.compress("".join(lines).encode(), mtime=0))
 
 
 def decided_again(record: Record, config: DecideConfig) -> Record:
