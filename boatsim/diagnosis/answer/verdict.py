@@ -4,6 +4,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 
 from boatsim.diagnosis.answer.findings import setting_of
+from boatsim.diagnosis.answer.refined_numbers import main_refinement
 from boatsim.diagnosis.answer.schema import Answer, EffectEntry, ParameterEntry
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.view.formatting import (
@@ -91,8 +92,11 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         return NOTHING_MISSING
     statements += _look_alikes(answer["effects"])
     if refined:
-        verb = "was" if len(answer["refined"]) == 1 else "were"
-        statements.append(f"{refined} {verb} refined")
+        one = len(answer["refined"]) == 1
+        statement = f"{refined} {'was' if one else 'were'} refined"
+        if main := main_refinement(answer):
+            statement += f": {main}" if one else f", above all {main}"
+        statements.append(statement)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.refined_numbers import refined_number_rows
 from boatsim.diagnosis.answer.schema import (
     EffectEntry,
     ParameterEntry,
@@ -19,7 +20,7 @@ from boatsim.diagnosis.answer.verdict import (
 )
 from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import effect_sentences
-from boatsim.diagnosis.report.sentences import held_out_improvement_sentence, refined_number_rows
+from boatsim.diagnosis.report.sentences import held_out_improvement_sentence
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
     capitalize,

@@ -7,6 +7,7 @@ from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.answer.incomplete import is_failure
+from boatsim.diagnosis.answer.refined_numbers import refined_number_rows
 from boatsim.diagnosis.answer.schema import (
     Answer,
     DisturbanceLevelEntry,
@@ -37,32 +38,6 @@ WAYS = {  # axis -> direction of a positive mean force, and of a negative one
     "pitch": ("bow up", "bow down"),
     "yaw": ("bow to starboard", "bow to port"),
 }
-NOT_IN_FILE = "not in the file"  # change of a number that the vessel file does not have
-
-
-def refined_number_rows(answer: Answer) -> list[list[str]]:
-    """Return the rows of the report's table of refined numbers of the vessel file.
-
-    A refined number is an estimate of the vessel file to which the recordings give a better value.
-
-    Args:
-        answer: Content of diagnosis.json.
-
-    Returns:
-        For each number: its words, its value before and after, and the relative change.
-    """
-    rows = []
-    for entry in answer.get("refined", []):
-        largest = max(abs(entry["before"]), abs(entry["after"]))
-        before = format_quantity(entry["before"], entry["unit"], largest=largest)
-        if entry["before"] == 0.0:
-            before = "0"
-        after = format_quantity(entry["after"], entry["unit"], entry["sd"], largest=largest)
-        off = NOT_IN_FILE
-        if entry["off"] is not None:
-            off = f"{100.0 * entry['off']:+.0f} %".replace("-", "−")
-        rows.append([entry["number"], before, after, off])
-    return rows
 
 
 def held_out_improvement_sentence(f: Findings) -> str:

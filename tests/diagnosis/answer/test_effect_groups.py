@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import boats
 import numpy as np
@@ -11,13 +12,14 @@ from unmeasured import unmeasured
 
 from boatsim.diagnosis.answer.effect_groups import EffectGroups, classify_effects
 from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
+from boatsim.diagnosis.answer.refined_numbers import main_refinement, refined_number_rows
 from boatsim.diagnosis.answer.schema import EffectEntry
 from boatsim.diagnosis.answer.verdict import verdict_sentences
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.sections import report_sections
-from boatsim.diagnosis.report.sentences import console_lines, refined_number_rows
+from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.physics import vessel
 from boatsim.view.page_blocks import Table
 from tests.diagnosis.report.test_page import planar
@@ -230,3 +232,23 @@ def test_an_effect_that_is_only_possible_is_shown_with_its_values() -> None:
     shown = [row[0].replace(" ", "_") for row in table.rows]
     assert len(shown) == len(effect["parameters"]) > 0
     assert all(key.startswith(name) for key, name in zip(effect["parameters"], shown, strict=True))
+
+
+def test_the_verdict_states_the_surest_refined_number_with_the_most_evidence(
+    tmp_path: Path,
+) -> None:
+    refined: Any = groups_of(ESTIMATED, tmp_path).refined
+    assert main_refinement({"refined": refined}) == ""
+    refined[0] |= {"confirmed": True, "probability": 0.9, "gain_nats": 20.0}
+    refined[1] |= {"confirmed": True, "probability": 0.8, "gain_nats": 30.0}
+    refined[2] |= {"confirmed": False, "probability": 0.9, "gain_nats": 40.0}
+    refined[3] |= {"confirmed": True, "probability": 0.3, "gain_nats": 50.0}
+    answer: Any = planar().answer | {"refined": refined}
+    before, after = refined_number_rows(answer)[1][1:3]
+    main = f"{refined[1]['number']} ({after} instead of {before})"
+    ending = f"Four numbers of the rough model were refined, above all {main}."
+    assert verdict_sentences(answer).endswith(ending)
+    answer["refined"] = refined[:1]
+    after = refined_number_rows(answer)[0][2]
+    ending = f"One number of the rough model was refined: thrust lag ({after})."
+    assert verdict_sentences(answer).endswith(ending)
