@@ -115,7 +115,7 @@ def draw_calibration(page: str, in_file: bool) -> str:
     whole = np.array([0.0, 1.0])
     curves = []
     for heading, name in (
-        ("## Calibration of the stated probabilities", "weights in use, seed 16"),
+        ("## Calibration of the stated probabilities", "weights in use, seed 17"),
         ("### 1,000 logs with other weights", "other weights, seed 8"),
     ):
         rows = list(table_below(page, heading, "| stated probability | names |"))

@@ -18,6 +18,7 @@ from boatsim.diagnosis.open_set.probability import (
     probability_beside_unknown,
     probability_of_true_cause,
 )
+from boatsim.errors import BadInput
 from validation.calibration.unknown_causes import UNKNOWN
 from validation.calibration.vessels import BOATS, PLANS
 from validation.calibration.weights import recorded_features
@@ -194,7 +195,8 @@ def decided_again(record: Record, config: DecideConfig) -> Record:
             probability = probability_beside_unknown(probability, config)
         # the part of the effect itself among its look-alikes stays
         own_part = effect["probability"] / own["probability"] if own["probability"] else 0.0
-        confirmed = effect["confirmed"] or effect in record["effects"]
+        # an effect whose size the recordings do not determine is not confirmed
+        confirmed = effect.get("confirmed", False) or effect in record["effects"]
         is_named = confirmed and probability >= config.least_probability
         tied = {"tied_with": own["tied_with"]}  # which an entry of a possible effect lacks
         stated = {**effect, **tied, "probability": probability * own_part}
@@ -212,7 +214,12 @@ def record(out: Path, job: Job) -> None:
         if diverges(files):
             save(out, job, [])
             return
-        first = diagnosed(files, trial, answer, ())
+        try:
+            first = diagnosed(files, trial, answer, ())
+        except BadInput as error:  # for example a boat that nearly capsizes
+            print(f"{job.name} is refused: {error}")
+            save(out, job, [])
+            return
         found.append(first)
         alike = look_alikes(answer, first)
         removes = np.random.default_rng([job.seed, job.number, 5]).random() < REMOVED_SHARE
