@@ -76,6 +76,7 @@ READ_BY_REPORT = {  # what a report imports from the diagnosis: the answer, its 
     for name in (
         *("answer.schema", "answer.findings", "answer.families", "answer.verdict"),
         *("answer.confirmation", "answer.described_terms", "answer.incomplete", "answer.log_entry"),
+        "answer.refined_numbers",
         *("model_names", "description.FittedTerm", "free_runs.FreeRun", "report"),
     )
 }
