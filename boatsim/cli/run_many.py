@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
+from ctypes import Array, c_double
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain, starmap
 from multiprocessing import get_context, parent_process
-from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from threading import Lock, Thread
@@ -364,7 +364,9 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
     context = get_context("spawn")
     with ignored_signals():  # Child processes inherit ignored signals.
         stop = context.Event()
-        reached = context.Array("d", len(tasks))
+        # Without a lock, because each number has one writer: an interruption of this process could
+        # leave a lock taken, for which the workers would wait for ever.
+        reached = context.Array("d", len(tasks), lock=False)
     arguments = (stop, reached, trust.trusted_folder_list())
     with ProcessPoolExecutor(jobs, context, _start_worker, arguments) as pool:
         with ignored_signals():
@@ -380,7 +382,7 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
 def _wait_for_runs(
     futures: Sequence[Future[Outcome]],
     tasks: Sequence[Task],
-    reached: "SynchronizedArray[float]",
+    reached: "Array[c_double]",
     report: progress.RunReport,
 ) -> None:
     """Report progress until all runs are finished."""
@@ -399,9 +401,7 @@ def _outcome_of_future(task: Task, future: Future[Outcome]) -> Outcome:
         return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
 
 
-def _start_worker(
-    stop: Event, reached: "SynchronizedArray[float]", trusted: trust.TrustedFolders
-) -> None:
+def _start_worker(stop: Event, reached: "Array[c_double]", trusted: trust.TrustedFolders) -> None:
     """Set up a worker process with the shared state and the trusted folders of its parent."""
     global _stop, _reached
     trust.adopt_trust(trusted)
@@ -431,5 +431,5 @@ def _run_in_worker(index: int, task: Task) -> Outcome:
 
 
 _stop: Event
-_reached: "SynchronizedArray[float]"
+_reached: "Array[c_double]"
 _at_work = Lock()
