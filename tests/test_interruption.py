@@ -2,6 +2,7 @@
 logs cut short."""
 
 import json
+import operator
 import os
 import re
 import resource
@@ -11,7 +12,9 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +24,7 @@ from alike import long
 
 from boatsim import interruption
 from boatsim.atomic_folder import atomic_folder
+from boatsim.cli.run_many import shared_times
 from boatsim.files import AppendedFile, replace_file
 from boatsim.interruption import deferred_signals
 from boatsim.physics.content import load_class, shipped_content_names
@@ -262,6 +266,30 @@ def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path)
 
 # Workers
 # -------------------------------------------------------------------------------------------------------------
+
+
+def test_reading_the_times_of_runs_may_be_interrupted_anywhere() -> None:
+    """Ctrl-C while the parent reads them must not leave a lock taken, for which workers wait."""
+    context = get_context("spawn")
+    times = shared_times(context, 2)
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for i in range(300):
+            with suppress(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, 2e-5 + 5e-7 * i)
+                while True:
+                    assert times[0] == 0.0
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    worker = context.Process(target=operator.setitem, args=(times, 0, 1.0))
+    worker.start()
+    worker.join(timeout=30.0)
+    worker.kill()
+    assert times[0] == 1.0
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain, starmap
 from multiprocessing import get_context, parent_process
+from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from threading import Lock, Thread
@@ -364,9 +365,7 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
     context = get_context("spawn")
     with ignored_signals():  # Child processes inherit ignored signals.
         stop = context.Event()
-        # Without a lock, because each number has one writer: an interruption of this process could
-        # leave a lock taken, for which the workers would wait for ever.
-        reached = context.Array("d", len(tasks), lock=False)
+        reached = shared_times(context, len(tasks))
     arguments = (stop, reached, trust.trusted_folder_list())
     with ProcessPoolExecutor(jobs, context, _start_worker, arguments) as pool:
         with ignored_signals():
@@ -377,6 +376,20 @@ def _run_parallel(tasks: Sequence[Task], jobs: int, report: progress.RunReport) 
                 return list(map(_outcome_of_future, tasks, futures))
             except KeyboardInterrupt:
                 stop.set()
+
+
+def shared_times(context: SpawnContext, count: int) -> "Array[c_double]":
+    """Return the times (count,) [s] that runs have reached, shared by all processes.
+
+    They have no lock, because each has one writer: an interruption of a process that reads them
+    could leave a lock taken, for which the others would wait for ever.
+
+    Args:
+        context: Context in which the processes are started.
+        count: Number of runs.
+    """
+    times: Array[c_double] = context.Array("d", count, lock=False)
+    return times
 
 
 def _wait_for_runs(
