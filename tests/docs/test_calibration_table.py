@@ -1,6 +1,8 @@
 """The table of calibration on the page of results is what the command prints of its records."""
 
+import json
 import re
+from pathlib import Path
 
 import pytest
 
@@ -81,3 +83,15 @@ def test_the_reliability_is_the_printed_one() -> None:
 def test_the_page_states_how_many_logs_there_are() -> None:
     logs = len({record["trial"] for record in RECORDS})
     assert f"{logs} logs of seed 17" in PAGE
+
+
+def test_a_packed_campaign_has_the_records_of_its_folder(tmp_path: Path) -> None:
+    for number, found in ((1, RECORDS[:2]), (2, []), (3, RECORDS[2:3])):
+        (tmp_path / f"S1_T{number:05d}.json").write_text(json.dumps(found))
+    packed = tmp_path / "packed.jsonl.gz"
+    campaign.pack(tmp_path, packed)
+    assert list(campaign.records(packed)) == list(campaign.records(tmp_path))
+    assert [one["trial"] for one in campaign.records(packed)] == [r["trial"] for r in RECORDS[:3]]
+    before = packed.read_bytes()
+    campaign.pack(tmp_path, packed)
+    assert packed.read_bytes() == before

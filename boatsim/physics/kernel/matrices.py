@@ -1,7 +1,7 @@
 """Operations on small dense matrices, in place.
 
 Products are inlined where they are called: with a size n that is a constant there, the compiler
-unrolls their loops, which makes them three times as fast.
+unrolls their loops.
 """
 
 from math import sqrt
