@@ -21,7 +21,7 @@ from boatsim.simulate.stepper import State
 INTERVAL = 0.03
 # Largest scaled rate of a steady motion: accelerations in units of g, and of g / L in rotation.
 # Rounding errors are 1e-14.
-STEADY = 1e-9
+STEADY = 1e-10
 PERTURBATION = 1e-6  # of the scaled unknowns, for derivatives
 MOST_ITERATIONS = 60  # of Newton's method; fewer than 10 suffice near a solution
 SMALLEST_STEP = 1e-4  # share of a Newton step below which the search for a smaller residual ends
