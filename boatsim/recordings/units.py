@@ -236,7 +236,8 @@ def find_roll_in_degrees(
 ) -> int | None:
     """Decide whether a recorded roll angle (N,) is in degrees.
 
-    The size of the roll shows it for a hull, and the speed of the roll for a body that turns over.
+    A recorded roll rate shows it. Without one, the size of the roll shows it for a hull, and the
+    speed of the roll for a body that turns over.
 
     Args:
         t: Times (N,) [s].
@@ -248,14 +249,18 @@ def find_roll_in_degrees(
         A row that shows it, None for radians.
     """
     largest = int(np.argmax(np.abs(phi)))
+    if rate is not None:
+        ratio = _ratio(cumulative_integral(t, rate), phi)
+        if _is_near(ratio, DEGREES):
+            return largest
+        if _is_near(ratio, 1.0):  # a hull that is knocked down
+            return None
     limit = MAX_ROLL
     if turns_over:
         limit = math.inf
         if _fastest_rolling(t, phi) > MAX_TUMBLING:
             return largest
     if abs(phi[largest]) > limit:
-        return largest
-    if rate is not None and _is_near(_ratio(cumulative_integral(t, rate), phi), DEGREES):
         return largest
     return None
 

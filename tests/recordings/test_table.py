@@ -378,6 +378,16 @@ def test_degrees_are_refused_with_the_column_that_has_them(tmp_path, degrees):
     assert "looks like degrees" in line_of(tmp_path / "run.csv")
 
 
+def test_a_recorded_roll_rate_shows_that_a_boat_was_knocked_down(tmp_path):
+    run = circle()
+    roll = {**run.signals, "phi_rad": 1.2 * np.sin(run.t), "p_radps": 1.2 * np.cos(run.t)}
+    write_csv(Recording("x", run.t, roll), tmp_path / "run.csv")
+    assert np.max(np.abs(read(tmp_path / "run.csv")["phi_rad"])) > 1.1
+    del roll["p_radps"]
+    write_csv(Recording("x", run.t, roll), tmp_path / "run.csv")
+    assert "column phi_rad" in line_of(tmp_path / "run.csv")
+
+
 def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_path):
     deep = tmp_path / "set" / "runs"
     deep.mkdir(parents=True)
