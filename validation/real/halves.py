@@ -1,36 +1,92 @@
 """Whether two halves of a set give the same answer: `python -m validation.real.halves NAME`.
 
 The runs of a set, in the order of their names, are dealt alternately to two halves, and each half
-is diagnosed alone. Printed are the effects that each half names with their parameters, the distance
-of two values in standard deviations, and the share of names that the other half gives too.
+is diagnosed alone; a single run is divided at its middle. Printed are the effects that each half
+names with their parameters, the distance of two values in standard deviations, and the share of
+names that the other half gives too.
+
+In place of a set, NAME may be a folder of recordings, such as the folder of prepared ones that
+another command of this package has written; `--vessel` and `--horizon` state what its notes do not.
 """
 
 from argparse import ArgumentParser
+from collections.abc import Sequence
 from math import hypot, nan
+from pathlib import Path
 
-from boatsim.diagnosis import pipeline
+from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.answer.schema import EffectEntry
-from validation.real.common import effects_of, print_table, runs_of
+from boatsim.recordings.table import write_csv
+from validation.real import esso_osaka_pond, esso_osaka_vessel, twin_usv_paths
+from validation.real.common import OUT, effects_of, print_table, runs_of
 from validation.real.floor import SPLITS
 
 NEAR = 2.0  # [sd] distance up to which two values agree: 95 % of normally distributed errors
 TEXT = "{:.3g} +- {:.2g}"
 Effects = dict[str, EffectEntry]
+# set -> vessel, None for that of its notes, and length of free runs [s]
+SETS: dict[str, tuple[str | None, float]] = {
+    esso_osaka_vessel.NAME: (None, esso_osaka_pond.HORIZON),
+    twin_usv_paths.NAME: (twin_usv_paths.VESSEL, twin_usv_paths.HORIZON),
+} | {name: (None, split.horizon) for name, split in SPLITS.items()}
 
 
-def diagnosed_halves(name: str) -> tuple[Effects, Effects]:
-    """Diagnose the halves of a set and return the effects that each names.
+def diagnosed_halves(
+    halves: Sequence[Sequence[Path]], vessel: str | None, horizon: float | None
+) -> tuple[Effects, Effects]:
+    """Diagnose two halves and return the effects that each names.
 
     Args:
-        name: Name of the set.
+        halves: Recordings of either half.
+        vessel: Name or file of the vessel; None: that of the notes.
+        horizon: Length of free runs [s]; None: the usual one.
     """
-    runs = list(runs_of(name).values())
     found = []
-    for half in (runs[::2], runs[1::2]):
-        diagnosis = pipeline.diagnose(half, horizon=SPLITS[name].horizon)
+    for half in halves:
+        diagnosis = pipeline.diagnose(half, vessel=vessel, horizon=horizon)
         print(diagnosis.findings.answer["sentence"])
         found.append({effect["name"]: effect for effect in effects_of(diagnosis)})
     return found[0], found[1]
+
+
+def halves_of(runs: Sequence[Path], vessel: str | None, out: Path) -> list[list[Path]]:
+    """Deal recordings alternately to two halves, or divide a single one at its middle.
+
+    The parts of a single recording are written to a folder, without its notes.
+
+    Args:
+        runs: The recordings, in the order of their names.
+        vessel: Name or file of the vessel; None: that of the notes.
+        out: Folder of the parts.
+    """
+    if len(runs) > 1:
+        return [list(runs[::2]), list(runs[1::2])]
+    whole, _ = loading.open_recording(runs[0], vessel, ())
+    middle = 0.5 * float(whole.t[0] + whole.t[-1])
+    out.mkdir(parents=True, exist_ok=True)
+    halves = []
+    for name, span in {"first": (-float("inf"), middle), "second": (middle, float("inf"))}.items():
+        halves.append([out / f"{name}.csv"])
+        write_csv(whole.between(*span), halves[-1][0])
+    return halves
+
+
+def pond_stretches(out: Path) -> list[Path]:
+    """Write the stretches of the pond's runs that its own command diagnoses to a folder.
+
+    Args:
+        out: The folder.
+    """
+    runs = esso_osaka_pond.open_runs(
+        runs_of(esso_osaka_vessel.NAME), str(esso_osaka_vessel.write_vessel())
+    )[0]
+    out.mkdir(parents=True, exist_ok=True)
+    files = []
+    for name, run in runs.items():
+        if name.startswith(esso_osaka_pond.FITTED):
+            files.append(out / f"{name}.csv")
+            write_csv(run.longest, files[-1])
+    return files
 
 
 def distances(first: Effects, second: Effects) -> dict[tuple[str, str], float]:
@@ -52,13 +108,13 @@ def distances(first: Effects, second: Effects) -> dict[tuple[str, str], float]:
     return found
 
 
-def print_halves(name: str) -> None:
-    """Diagnose the halves of a set and print what they have in common.
+def print_halves(title: str, halves: tuple[Effects, Effects]) -> None:
+    """Print what the effects of two halves have in common.
 
     Args:
-        name: Name of the set.
+        title: Name of the set.
+        halves: Effects of each half by name.
     """
-    halves = diagnosed_halves(name)
     apart = distances(*halves)
     rows = []
     for effect in sorted({*halves[0], *halves[1]}):
@@ -73,7 +129,7 @@ def print_halves(name: str) -> None:
             distance = apart.get((effect, parameter))
             cells.append("-" if distance is None else f"{distance:.1f}")
             rows.append([f"{effect} {parameter}", *cells])
-    print_table(name, ["effect and parameter", "first half", "second half", "apart [sd]"], rows)
+    print_table(title, ["effect and parameter", "first half", "second half", "apart [sd]"], rows)
     common = len(set(halves[0]) & set(halves[1]))
     print(f"names of the first half that the second gives too: {common} of {len(halves[0])}")
     print(f"names of the second half that the first gives too: {common} of {len(halves[1])}")
@@ -82,10 +138,26 @@ def print_halves(name: str) -> None:
 
 
 def main() -> None:
-    """Read the arguments and print."""
+    """Read the arguments, diagnose and print."""
     parser = ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("name", choices=sorted(SPLITS), help="set of recordings")
-    print_halves(parser.parse_args().name)
+    parser.add_argument("name", help=f"folder of recordings, or of {', '.join(sorted(SETS))}")
+    parser.add_argument("--vessel", help="name or file of the vessel (default: that of the notes)")
+    parser.add_argument("--horizon", type=float, help="length of free runs [s]")
+    given = parser.parse_args()
+    vessel, horizon, title = given.vessel, given.horizon, given.name
+    if given.name in SETS:
+        vessel, horizon = SETS[given.name]
+        runs = list(runs_of(given.name).values())
+    elif Path(given.name).is_dir():
+        title = Path(given.name).name
+        runs = sorted(Path(given.name).glob("*.csv"))
+    else:
+        parser.error(f"{given.name} is no folder and no set; allowed are {', '.join(sorted(SETS))}")
+    out = OUT / title / "halves"
+    if given.name == esso_osaka_vessel.NAME:
+        runs, vessel = pond_stretches(out), str(esso_osaka_vessel.write_vessel())
+    halves = halves_of(runs, vessel, out)
+    print_halves(title, diagnosed_halves(halves, vessel, horizon))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Formulas in words: what a term varies with, its unit, and the statement of a formula."""
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 
 from boatsim.diagnosis.answer.schema import DescribedEntry, TermEntry
@@ -17,7 +17,6 @@ from boatsim.view.formatting import (
     format_quantity,
     format_unit,
     format_with_sd,
-    join_words,
     name_and_unit,
     name_in_words,
 )
@@ -44,6 +43,7 @@ FACTORS = {
 SIDES = {"all": "", "port": " to port", "starboard": " to starboard"}
 SENSES = {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}
 POWERS = {2: " squared", 3: " cubed"}
+MINUS = "−"  # as numbers are written
 FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
@@ -59,7 +59,6 @@ def described_entries(
     Returns:
         One entry for each axis, recording of events, and whether it holds for held-out recordings;
         those with most evidence first.
-        evidence first.
     """
     if description is None:
         return []
@@ -142,8 +141,8 @@ def term_unit(term: SymbolicTerm) -> str:
 def _entry(written: Sequence[FittedTerm], vessel: Vessel) -> DescribedEntry:
     """Return the entry of the terms of one formula."""
     axis, first = term_axis(written[0].term), written[0]
-    sum_of_terms = join_words((_statement(w, vessel) for w in written), "plus")
-    statement = f"{axis_force_words(axis)} that no candidate effect explains: {sum_of_terms}"
+    statement = f"{axis_force_words(axis)} that no candidate effect explains: "
+    statement += _sum(_statement(w, vessel) for w in written)
     if not first.carries:
         statement += "; held-out recordings do not confirm it"
     return {
@@ -152,6 +151,19 @@ def _entry(written: Sequence[FittedTerm], vessel: Vessel) -> DescribedEntry:
         "terms": [_term(w, vessel) for w in written],
         "carries_over": first.carries,
     }
+
+
+def _sum(statements: Iterable[str]) -> str:
+    """Return the sum of terms in words: 2 N times a, plus 3 N times b, minus 1 N times c."""
+    text = ""
+    for statement in statements:
+        if not text:
+            text = statement
+        elif statement.startswith(MINUS):
+            text += f", minus {statement.removeprefix(MINUS)}"
+        else:
+            text += f", plus {statement}"
+    return text
 
 
 def _term(w: FittedTerm, vessel: Vessel) -> TermEntry:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import cos, exp, pi, sin, tanh
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import boats
@@ -12,8 +13,10 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, COMMANDS, Late, Missing, sail
 
+from boatsim.diagnosis.answer.described_terms import described_entries
 from boatsim.diagnosis.candidates import candidate_library, diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.description import FittedTerm
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.output import patched_vessel
@@ -289,3 +292,16 @@ def test_times_are_those_at_which_it_acts() -> None:
     assert event.term.begin == pytest.approx(14.0, abs=1.0)
     assert min(event.term.end, 40.0) == pytest.approx(25.0, abs=1.0) and event.term.end < EVER
     assert replace(event.term, run="").run == ""
+
+
+def test_a_formula_of_several_terms_is_written_as_a_sum_with_its_signs() -> None:
+    written = []
+    for coefficient, of in ((-3.0, "yaw_rate"), (2.0, "surge_speed"), (-1.0, "sway_speed")):
+        term = DescribedForce.from_settings({"coefficient": coefficient, "of": [of], "axis": "yaw"})
+        written.append(FittedTerm(term, 0.1, 10.0, carries=True))
+    description: Any = SimpleNamespace(terms=written)
+    (formula,) = described_entries(description, BOAT)
+    assert formula["statement"].split(": ")[1] == (
+        "−3.00 ± 0.10 N m s times yaw rate, plus 2.00 ± 0.10 N s times surge speed, "
+        "minus 1.00 ± 0.10 N s times sway speed"
+    )
