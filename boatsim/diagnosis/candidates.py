@@ -126,7 +126,7 @@ def candidate_library(
         if kind.confounded_with and not source.requested:
             others = " or ".join(kind.confounded_with)
             excluded[name] = (
-                f"recordings cannot distinguish it from {others}; --library {name} tests it"
+                f"recordings cannot distinguish it from {others}; add --library {name} to test it"
             )
             continue
         excluded.pop(name, None)

@@ -53,6 +53,7 @@ from boatsim.diagnosis.question import Question, compile_program, set_up_estimat
 from boatsim.diagnosis.recalibration import (
     decide_recalibration,
     fix_undetermined_coefficients,
+    predicts_worse,
 )
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import (
@@ -526,7 +527,8 @@ def adopt_refitted_coefficients(
 
     They are adopted if the recordings determine them, and if they do not make simulations of
     held-out recordings worse. The selection has compared hypotheses with all coefficients free, so
-    that its evidence stays valid. Without effects the patched vessel is the recalibrated one.
+    that its evidence stays valid. Without effects the patched vessel is the recalibrated one, also
+    if its effects are only possible and make simulations of held-out recordings worse.
 
     Args:
         question: Held-out recordings.
@@ -543,7 +545,10 @@ def adopt_refitted_coefficients(
     found = decide_recalibration(
         problem, ranking.nominal, refitted, question.held_out, is_answer=not best.effects
     )
-    if not best.effects:
+    is_only_possible = not (ranking.named or ranking.described_terms)
+    if not best.effects or (
+        is_only_possible and predicts_worse(problem, best, found.fit, question.held_out)
+    ):
         best = found.fit
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
 

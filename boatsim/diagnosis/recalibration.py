@@ -73,7 +73,7 @@ def decide_recalibration(
     horizon = free_run_horizon(problem, held_out)
     runs = free_runs(problem, {WRITTEN: written, REFITTED: found}, held_out, horizon)
     harmed = generalization.harmed_groups(problem, written, found, held_out, horizon)
-    adopted = not is_harmful(problem, runs) and not harmed
+    adopted = not is_harmful(runs, problem.config.validate.harmful) and not harmed
     errors = {family: rms[REFITTED] for family, rms in rms_errors(runs).items()}
     if not adopted:
         moved = _move(found, written.theta)
@@ -172,21 +172,36 @@ def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:
     return sorted(kept)
 
 
-def is_harmful(problem: Problem, runs: Sequence[FreeRun]) -> bool:
+def predicts_worse(
+    problem: Problem, found: Fit, simpler: Fit, held_out: Sequence[MappedRecording]
+) -> bool:
+    """Whether errors on held-out recordings are larger with a fit than with a simpler vessel.
+
+    Args:
+        problem: The estimation problem.
+        found: Fit of the vessel model with some candidate effects.
+        simpler: Fit of the vessel model without them.
+        held_out: Held-out recordings, at least one.
+    """
+    horizon = free_run_horizon(problem, held_out)
+    runs = free_runs(problem, {WRITTEN: simpler, REFITTED: found}, held_out, horizon)
+    return is_harmful(runs, problem.config.validate.worse)
+
+
+def is_harmful(runs: Sequence[FreeRun], limit: float) -> bool:
     """Whether refitted coefficients make simulations of held-out recordings worse.
 
     Their free runs are compared with free runs of the vessel file's coefficients.
 
     Args:
-        problem: Problem whose configuration holds the limit.
         runs: Free runs (simulations with recorded commands alone) of both over held-out recordings.
+        limit: Ratio of rms errors, geometric mean over the signals, above which they are worse.
     """
     before = generalization.mean_square_errors(runs, WRITTEN)
     if not before:
         return False
     after = generalization.mean_square_errors(runs, REFITTED)
-    limit = problem.config.validate.harmful**2
-    return not generalization.error_ratio(after, before) <= limit
+    return not generalization.error_ratio(after, before) <= limit**2
 
 
 def _move(found: Fit, theta: Array) -> Fit:

@@ -98,6 +98,23 @@ def test_later_stages_take_the_results_of_earlier_ones(
     assert answer["seconds"] == 1.0
 
 
+def test_possible_effects_that_make_predictions_worse_are_not_in_the_corrected_vessel(
+    loaded: LoadedRecordings, question: Question, base: Baseline
+) -> None:
+    decision = pipeline.decide_causes(question, pipeline.select_candidates(question, base, loaded))
+    ranking = decision.ranking
+    found = ranking.best
+    theta = found.theta.copy()
+    theta[[f.relative for f in found.free]] *= 30.0
+    for named in (ranking.named[:1], ()):
+        bad = replace(ranking, best=replace(found, theta=theta), named=named, description=None)
+        adopted = pipeline.adopt_refitted_coefficients(question, decision, bad)
+        assert (adopted.best is adopted.recalibrated) == (not named)
+    good = replace(ranking, named=(), description=None)
+    adopted = pipeline.adopt_refitted_coefficients(question, decision, good)
+    assert adopted.best is found
+
+
 @pytest.mark.parametrize(
     ("stage", "words"),
     [

@@ -14,7 +14,7 @@ RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"
 OUT = Path("out/real")
 T = TypeVar("T")
 DEG = 57.29578  # [deg/rad]
-MODEL_COLUMNS = ("recalibrated", "patched", "patched / recalibrated")
+MODEL_COLUMNS = ("retuned", "corrected", "corrected / retuned")
 KINDS = {
     "physics": "missing from the model of the boat",
     "measurement": "wrong with the instruments",

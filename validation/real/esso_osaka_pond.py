@@ -374,8 +374,8 @@ def print_judged(runs: Sequence[FreeRun], title: str) -> None:
             a, b, c = scale_errors(off[family], factor)
             row = [f"{kind or 'all'}, {what}", str(len(some)), *format_fixed(3, a, b, c)]
             rows.append([*row, f"{c / a:.2f}", goals[0], f"{c / b:.2f}", goals[1]])
-    header = ["rms", "free runs", "captive", "recalibrated", "patched"]
-    header += ["/ captive", "goal", "/ recalibrated", "goal"]
+    header = ["rms", "free runs", "captive", "retuned", "corrected"]
+    header += ["/ captive", "goal", "/ retuned", "goal"]
     print_table(title, header, rows)
 
 

@@ -89,9 +89,9 @@ def print_comparison(
             ratios = format_fixed(2, now[2] / now[0], now[2] / then[2])
             rows.append([f"{kind or 'all'}, {what}", str(len(some)), *cells, *ratios])
     header = ["rms", "free runs"]
-    for model in ("captive", "recalibrated", "patched"):
+    for model in ("captive", "retuned", "corrected"):
         header += [model, f"{model} + wind"]
-    header += ["patched / captive, + wind", "+ wind / without"]
+    header += ["corrected / captive, + wind", "+ wind / without"]
     print_table(TITLE, header, rows)
     if not concealed:
         print(f"(no comparison: validation.real.esso_osaka_pond writes {ERRORS_FILE})")

@@ -83,12 +83,12 @@ def print_leave_one_out(diagnosis: Diagnosis, recordings: list[MappedRecording])
         rows.append(row)
     header = ["held out"]
     for what, _ in UNITS.values():
-        header += [f"recalibrated {what}", "patched", "ratio"]
+        header += [f"retuned {what}", "corrected", "ratio"]
     title = "leave one run out: rms of its free runs, 60 s, all else refitted on the nine others"
     print_table(title, header, rows)
     heading, position = better.values()
     print(
-        f"better than the recalibrated model in {heading} of {len(rows)} runs in heading, "
+        f"better than the retuned model in {heading} of {len(rows)} runs in heading, "
         f"{position} in position"
     )
     print("(the hull is directionally unstable: in the 1 degree zig-zags initial errors grow)")

@@ -124,7 +124,7 @@ def print_overshoots(diagnosis: Diagnosis, runs: dict[str, Recording]) -> None:
             for found in by_model:
                 row += format_fixed(1, *found[i : i + 1]) or ["-"]
             rows.append(row)
-    header = ["zig-zag", "overshoot", "recorded", "as published", "recalibrated", "patched"]
+    header = ["zig-zag", "overshoot", "recorded", "as published", "retuned", "corrected"]
     title = "overshoot after the rudder's reversal [deg], one free run from the first row"
     print_table(title, header, rows)
 
@@ -140,7 +140,7 @@ def print_coefficients(diagnosis: Diagnosis) -> None:
         determined = "yes" if variance < (DETERMINED * f.sd) ** 2 else "hardly"
         rows.append([f"{f.effect} {f.name}", f"{x:.2f} +- {np.sqrt(variance):.2f}", determined])
     header = ["coefficient", "factor", "determined by the recordings"]
-    print_table("recalibrated, as factors of the published model", header, rows)
+    print_table("retuned, as factors of the published model", header, rows)
 
 
 def print_residual(diagnosis: Diagnosis) -> None:
@@ -224,7 +224,7 @@ def print_error_sources(
         least, most = np.quantile([sample[what] for sample in expected], [0.1, 0.9])
         cells = format_fixed(3, error, with_held_out[what])
         rows.append([what, *cells, f"{least:.3f} to {most:.3f}"])
-    header = ["rms error", "recalibrated", "refitted with the held-out runs"]
+    header = ["rms error", "retuned", "refitted with the held-out runs"]
     header.append("coefficients sampled from the posterior")
     title = f"error due to structure and coefficients; middle 80 % of {SAMPLES} samples"
     print_table(title, header, rows)

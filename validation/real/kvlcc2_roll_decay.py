@@ -21,6 +21,7 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.model_names import MODEL_WORDS
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain
@@ -288,7 +289,7 @@ def transfer_rows(at_rest: Diagnosis, whole: Recording) -> Rows:
     rms = rms_errors(stretches)["roll_rms_rad"]
     rows = []
     for model, x in rms.items():
-        rows.append([model, f"{x * DEG:.3f}", f"{x / rms['recalibrated']:.2f}"])
+        rows.append([MODEL_WORDS[model], f"{x * DEG:.3f}", f"{x / rms['recalibrated']:.2f}"])
     return rows
 
 
@@ -314,7 +315,7 @@ def last_third_rows(diagnosis: Diagnosis, whole: Recording) -> tuple[Rows, Ranki
     rms = rms_errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
     rows = []
     for label, x in rms.items():
-        rows.append([label, f"{x * DEG:.4f}", gains.get(label, "")])
+        rows.append([MODEL_WORDS.get(label, label), f"{x * DEG:.4f}", gains.get(label, "")])
     return rows, ranking
 
 
@@ -369,7 +370,7 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
         ),
         (
             "The release at 15.5 kn held out from the boats fitted to the windows at zero speed",
-            ["model", "rms roll error [deg]", "/ recalibrated"],
+            ["model", "rms roll error [deg]", "/ retuned"],
             transfer_rows(windows, moving),
         ),
         (

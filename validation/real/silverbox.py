@@ -242,16 +242,16 @@ def rms(off: Array, begin: int = START, end: int | None = None) -> float:
 
 
 def models_of(diagnosis: Diagnosis) -> dict[str, Fit]:
-    """Return the linear oscillator, that with one more effect at a time, and the patched one."""
+    """Return the linear oscillator, that with one more effect at a time, and the corrected one."""
     ranking = diagnosis.ranking
-    models = {"linear, as written": ranking.nominal, "linear, recalibrated": ranking.recalibrated}
+    models = {"linear, as written": ranking.nominal, "linear, retuned": ranking.recalibrated}
     identified = names_of(ranking.named)
     names: list[str] = []
     for name in ranking.best.effects:
         if name in identified:
             names.append(name)
             models[f"+ {name}"] = with_effects(diagnosis.problem, ranking.recalibrated, names)
-    return models | {"patched": ranking.best}
+    return models | {"corrected": ranking.best}
 
 
 # ---- tables
@@ -359,13 +359,13 @@ def main() -> None:
     if arrow >= GOAL:
         verdict = "missed"
     print(f"  goal: {GOAL:g} mV over the arrow: {verdict}, {arrow:.3f} mV")
-    header = ["over", "nominal", "recalibrated", "patched", "ratio"]
+    header = ["over", "before", "retuned", "corrected", "ratio"]
     cells = ["arrow", *format_fixed(3, nominal, linear, arrow, arrow / linear)]
     print_table("Rms error [mV], one free run", header, [cells])
     header = ["input between its rows", "linear", "+ " + ", ".join(COMPARED), "evidence [nats]"]
     title = "Rms error [mV] over a held-out stretch of the training data, by interpolation of input"
     print_table(title, header, input_rows(runs["train"], diagnosis))
-    few = ["linear, recalibrated", *list(models)[-2:]]
+    few = ["linear, retuned", *list(models)[-2:]]
     left = dict(zip(few, runs_named(off[ARROW], few), strict=True))
     header = ["of the arrow", "recorded [mV]", *few, "patched [% of recorded]"]
     title = "Residual, rms error [mV], by amplitude"

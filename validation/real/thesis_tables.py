@@ -416,7 +416,7 @@ def print_ranking(ranking: Ranking) -> None:
         kind = KINDS.get(name, "physics")
         rows.append([name, kind, *format_fixed(1, first, gain), values_text(fitted, name), verdict])
     header = ["candidate", "kind", "alone [nats]", "with the others [nats]", "value +- sd"]
-    title = "candidates: gain over the recalibrated nominal alone, and with the identified effects"
+    title = "candidates: gain over the retuned vessel alone, and with the identified effects"
     print_table(title, [*header, "verdict"], rows)
 
 
@@ -489,7 +489,7 @@ def print_leave_one_out(tables: Tables, ranking: Ranking) -> None:
     whole = distance(tables, base, tests), distance(tables, best, tests)
     row = ["all", *format_fixed(2, *whole, *rms, rms[1] / rms[0])]
     rows.append([*row, f"{thrust_ratio(best):.3f}"])
-    header = ["test", "fitted: recalibrated", "with effects", "held out: recalibrated"]
+    header = ["test", "fitted: retuned", "with effects", "held out: retuned"]
     header += ["with effects", "ratio", "thrust ahead / astern"]
     print_table("J, the rms residual of a test's norms (log ratios; 10 deg; 0.1 m)", header, rows)
     print(f"held-out test predicted better with effects in {better} of {len(tests)}")
@@ -519,7 +519,7 @@ def print_norms(ranking: Ranking) -> None:
             for found in columns:
                 row.append(f"{found[name]:.3g}" if found else "-")
             rows.append(row)
-    header = ["test, norm", "published", "as published model", "recalibrated", "with effects"]
+    header = ["test, norm", "published", "as published model", "retuned", "with effects"]
     header.append("corrected controller")
     title = "norms of the thesis' program, mean of six seeds; last column: our controller"
     print_table(title, header, rows)

@@ -194,11 +194,11 @@ def _statement(w: FittedTerm, vessel: Vessel) -> str:
 
 
 def _change_of_thrust(term: DescribedThrust, unit: str, sd: float) -> str:
-    """Return the size of a change of thrust: 15.0 ± 2.0 % less to port when pushing astern."""
+    """Return the size of a change of thrust: 15.0 ± 2.0 % less thrust to port, when astern."""
     text = f"{format_with_sd(100.0 * abs(term.coefficient), 100.0 * sd)} %"
     if per := format_unit(unit).removeprefix("1"):
         text += f" {per}"
-    more = "more" if term.coefficient > 0.0 else "less"
+    more = "more thrust" if term.coefficient > 0.0 else "less thrust"
     return f"{text} {more}{SIDES[term.side]}{SENSES[term.sense]}"
 
 
@@ -233,7 +233,8 @@ def _activity_condition(term: SymbolicTerm) -> str:
     if term.acts == "rising":
         return f"rising from zero at {begin} s to its full value at {format_number(term.end)} s"
     if term.acts == "fading":
-        return f"fading from {begin} s on, to {FADED} % after {format_number(span)} s"
+        start = "at first" if term.begin == 0.0 else f"from {begin} s on"
+        return f"{start}, falling to {FADED} % of that after {format_number(span)} s"
     if term.acts == "swinging":
         period = f"oscillating with a period of {format_number(span)} s"
         return f"{period} in {term.run}" if term.run else period

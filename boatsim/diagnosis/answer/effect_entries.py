@@ -104,7 +104,7 @@ def possible_entry(
         "gain_nats": round(doubtful.gain, 2),
         "words": _words(best, effect),
         "why": why,
-        "in_patch": True,
+        "in_patch": doubtful.name in best.effects,
         "parameters": _parameters(problem, best, effect),
         "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",

@@ -80,7 +80,8 @@ class PossibleEntry(TypedDict):
     gain_nats: float
     words: str
     why: str  # reason why it is not among the identified effects
-    in_patch: NotRequired[bool]  # whether the patched vessel contains it, as a description
+    in_patch: NotRequired[bool]  # whether the patched vessel contains it, as a description; it
+    # does not if such effects make simulations of held-out recordings worse
     parameters: NotRequired[dict[str, "ParameterEntry"]]
     alone: NotRequired[dict[Family, AloneEntry]]
     confirmed: NotRequired[bool]

@@ -27,13 +27,17 @@ NOTHING_RANKED = (
     "recordings diverge"
 )
 NOTHING_MISSING = (
-    "No missing effect was found: the vessel model explains these recordings to within their noise."
+    "No missing effect was found: {}the vessel model explains these recordings to within their "
+    "noise."
 )
-
-NONE_MISSING_WITH_REFINED = (
-    "No missing effect was found: with {} refined, the vessel model explains these recordings to "
-    "within their noise."
-)
+REFITTED = "with refitted coefficients, "
+# end of the description of a signed parameter -> words for its negative values
+OPPOSITES = {
+    "positive ahead": "astern",
+    "positive downward": "upward",
+    "positive forward": "aft",
+    "positive to starboard": "to port",
+}
 
 
 def effect_description(effect_words: str) -> str:
@@ -58,6 +62,15 @@ def finds_only_measurement_errors(answer: Answer) -> bool:
         if effect["kind"] != "measurement":
             return False
     return answer["verdict"] == "named"
+
+
+def has_refitted_coefficients(answer: Answer) -> bool:
+    """Return whether the retuned vessel has other coefficients than the vessel file.
+
+    Args:
+        answer: Content of diagnosis.json.
+    """
+    return answer.get("recalibration", {}).get("adopted", False)
 
 
 def blames_log(answer: Answer) -> bool:
@@ -87,9 +100,9 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     statements += _formulas(answer, bool(answer["effects"]))
     refined = _refined_numbers(answer)
     if not statements and refined:
-        return NONE_MISSING_WITH_REFINED.format(refined)
+        return NOTHING_MISSING.format(f"with {refined} refined, ")
     if not statements:
-        return NOTHING_MISSING
+        return NOTHING_MISSING.format(REFITTED if has_refitted_coefficients(answer) else "")
     statements += _look_alikes(answer["effects"])
     if refined:
         one = len(answer["refined"]) == 1
@@ -152,7 +165,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     for effect in answer["effects"]:
         if effect["kind"] == "measurement":
             measured.append(_clause(effect, words))
-        elif _probability_with_look_alikes(answer, effect) < sure:
+        elif probability_with_look_alikes(answer, effect) < sure:
             probable.append(_clause(effect, words))
         else:
             physics.append(_clause(effect, words))
@@ -228,8 +241,13 @@ def _left_out(sure: Sequence[str], probable: Sequence[str]) -> str:
     return statement
 
 
-def _probability_with_look_alikes(answer: Answer, effect: EffectEntry) -> float:
-    """Return the probability that an effect or one of its look-alikes is a true cause."""
+def probability_with_look_alikes(answer: Answer, effect: EffectEntry) -> float:
+    """Return the probability that an effect or one of its look-alikes is a true cause.
+
+    Args:
+        answer: Content of diagnosis.json.
+        effect: An identified effect.
+    """
     for one in answer.get("signs", {}).get("effects", []):
         if one["name"] == effect["name"]:
             return one["probability"]
@@ -339,13 +357,25 @@ def format_fitted_values(effect: EffectEntry, words: Mapping[str, str]) -> str:
     for key, p in _main_parameters(effect).items():
         if p.get("statement"):
             continue
-        name, text = format_parameter(key, p["value"], p["unit"], p["sd"])
+        meaning = words.get(f"{effect['name']}.{key}", "")
+        value, way = _size_and_direction(p["value"], meaning)
+        name, text = format_parameter(key, value, p["unit"], p["sd"])
+        text += way
         if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
-            name = words.get(f"{effect['name']}.{key}", name)
+            name = meaning or name
         if p.get("at_bound"):
             text += ", the bound of its range"
         numbers.append(f"{name} {text}")
     return ", ".join(numbers)
+
+
+def _size_and_direction(value: float, meaning: str) -> tuple[float, str]:
+    """Return a signed value as its size, with words for its direction if its meaning has them."""
+    for ending, opposite in OPPOSITES.items():
+        if meaning.endswith(ending):
+            way = ending.removeprefix("positive ") if value > 0.0 else opposite
+            return abs(value), f" {way}"
+    return value, ""
 
 
 def effects_of_kind(answer: Answer, kind: str) -> list[EffectEntry]:

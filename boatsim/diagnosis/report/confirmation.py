@@ -53,7 +53,7 @@ def _latency_line(effect: EffectEntry) -> str:
 
 
 def recalibration_sentences(f: Findings) -> list[str]:
-    """Return sentences on the coefficients that keep the values of the vessel file.
+    """Return sentences on coefficients that keep their values and effects that are not adopted.
 
     Args:
         f: Findings of a diagnosis.
@@ -61,14 +61,22 @@ def recalibration_sentences(f: Findings) -> list[str]:
     found = f.answer.get("recalibration")
     if found is None:
         return []
+    sentences = []
     if not found["adopted"]:
-        return _not_adopted(f, found["refitted"])
-    if not found["undetermined"]:
-        return []
-    return [
-        "The retuned vessel keeps these numbers of the vessel file, because the recordings do not "
-        f"determine them well enough: {join_words(_grouped_names(found['undetermined']))}."
-    ]
+        sentences += _not_adopted(f, found["refitted"])
+    elif found["undetermined"]:
+        sentences.append(
+            "The retuned vessel keeps these numbers of the vessel file, because the recordings do "
+            "not determine them well enough: "
+            f"{join_words(_grouped_names(found['undetermined']))}."
+        )
+    possible = f.answer.get("also_possible", [])
+    if dropped := [name_in_words(e["name"]) for e in possible if e.get("in_patch") is False]:
+        sentences.append(
+            "The corrected vessel is the retuned one: it would predict the held-out recordings "
+            f"worse with what is also possible ({join_words(dropped)})."
+        )
+    return sentences
 
 
 def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:

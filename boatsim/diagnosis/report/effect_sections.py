@@ -16,6 +16,7 @@ from boatsim.diagnosis.answer.verdict import (
     effect_description,
     effects_of_kind,
     held_out_only_statement,
+    probability_with_look_alikes,
     ratio_sentences,
 )
 from boatsim.diagnosis.report import figures
@@ -30,6 +31,7 @@ from boatsim.view.formatting import (
     format_nats,
     format_number,
     format_parameter,
+    format_probability,
     format_quantity,
     format_with_sd,
     join_words,
@@ -108,6 +110,9 @@ def possible_effects_section(f: Findings) -> Iterator[Block]:
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
     likely = format_cause_probability(e["probability"])
+    if e["tied_with"]:
+        together = format_probability(probability_with_look_alikes(f.answer, e))
+        likely += f", {together} together with its look-alikes"
     yield Heading(capitalize(effect_description(e["words"])), f"{e['name']} · {kind} · {likely}")
     if ratios := ratio_sentences([e]):
         sentences = [f"{capitalize(ratio)}." for ratio in ratios]
@@ -220,9 +225,8 @@ def _structure(s: StructureEntry) -> str:
     if s["p_value"] >= 1e-6:
         often = format_number(1.0 / s["p_value"], 1)
     return (
-        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. One of the "
-        f"{s['tried']} quantities tested would appear to do so by chance once in {often} "
-        "recordings."
+        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. By chance, any of "
+        f"the {s['tried']} quantities tested would show this in one of {often} diagnoses."
     )
 
 

@@ -35,11 +35,14 @@ def next_experiment_section(f: Findings) -> Iterator[Block]:
     if not wanted:
         if f.answer["effects"]:
             odds = math.exp(f.setting("plan.min_gain"))
+            start = "These recordings decide the question"
+            if _is_open(f):
+                start = "No further recording of this kind settles what is still open"
             yield Text(
-                "Nothing more is needed for this question: none of the manoeuvres considered is "
-                "expected to change the odds between an identified effect and its rivals by more "
-                f"than a factor of {odds:.1f}."
+                f"{start}: none of the manoeuvres considered is expected to change the odds "
+                f"between an identified effect and its rivals by more than a factor of {odds:.1f}."
             )
+            yield from _about_unknown_cause(f)
         return
     if is_optional(f):
         yield Text(
@@ -73,6 +76,7 @@ def next_experiment_section(f: Findings) -> Iterator[Block]:
     )
     if sentence := _not_in_doubt(f, wanted["separates"]):
         yield Text(sentence)
+    yield from _about_unknown_cause(f)
     yield Note(STATISTICS, f"The expected log Bayes factor is {format_nats(gain)} nats.")
     if f.steps:
         yield _commands(f)
@@ -92,8 +96,25 @@ def is_optional(f: Findings) -> bool:
         return False
     if not {effect["name"] for effect in effects} & set(wanted["separates"]):
         return False
+    return not _is_open(f)
+
+
+def _is_open(f: Findings) -> bool:
+    """Return whether an effect has a look-alike, is not sure, or only possible."""
     sure = f.setting("decide.sure_probability")
-    return all(effect["probability"] >= sure for effect in effects)
+    if f.answer.get("also_possible"):
+        return True
+    return any(e["tied_with"] or e["probability"] < sure for e in f.answer["effects"])
+
+
+def _about_unknown_cause(f: Findings) -> Iterator[Block]:
+    """Yield how to find a cause that no candidate effect describes."""
+    if f.answer["unknown"]["flag"]:
+        yield Text(
+            "No manoeuvre tells what the unknown cause is. To find it, repeat a recording in which "
+            "the force is missing with one thing changed at a time, such as the battery, the "
+            "loading, the trim or the place."
+        )
 
 
 def _not_in_doubt(f: Findings, separated: Sequence[str]) -> str:

@@ -3,11 +3,16 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from boatsim.diagnosis.answer.findings import Findings, MissingForceCurve
 from boatsim.diagnosis.answer.schema import (
     IntervalEntry,
 )
-from boatsim.diagnosis.answer.verdict import finds_only_measurement_errors
+from boatsim.diagnosis.answer.verdict import (
+    finds_only_measurement_errors,
+    has_refitted_coefficients,
+)
 from boatsim.diagnosis.report import figures
 from boatsim.view import svg_plots
 from boatsim.view.formatting import (
@@ -56,9 +61,7 @@ def missing_force_section(f: Findings) -> Iterator[Block]:
         unknown = f.answer["unknown"]
         yield Text(
             "An interval is flagged wherever the missing force exceeds the assumed disturbance "
-            "level. Together the intervals are not enough for a finding: no candidate effect "
-            "explains them clearly better than the vessel model alone, and the evidence for a "
-            "cause outside the candidates is not sufficient."
+            f"level. {_why_nothing_is_missing(f)}"
         )
         yield Note(
             STATISTICS,
@@ -68,18 +71,58 @@ def missing_force_section(f: Findings) -> Iterator[Block]:
     yield _interval_table(where["intervals"])
 
 
+def _why_nothing_is_missing(f: Findings) -> str:
+    """Return why the flagged intervals are no finding."""
+    if has_refitted_coefficients(f.answer):
+        return (
+            "The coefficients of the vessel file cause these forces: with refitted ones, what is "
+            "left is no more than a disturbance of the assumed kind."
+        )
+    return (
+        "Together the intervals are not enough for a finding: no candidate effect explains them "
+        "clearly better than the vessel model alone, and the evidence for a cause outside the "
+        "candidates is not sufficient."
+    )
+
+
+def _left_over_words(f: Findings) -> str:
+    """Return the words for the force that the final vessel still lacks.
+
+    They are "" if the final vessel is the one of the vessel file, or if its force is not known.
+    """
+    if not any(m.left for m in f.missing):
+        return ""
+    if f.has_added_effects:
+        return "left with the corrected vessel"
+    if has_refitted_coefficients(f.answer):
+        return "left with refitted coefficients"
+    return ""
+
+
+def _left_over_rms(f: Findings, axis: str) -> float:
+    """Return the rms over all recordings of the force [N, N m] that is left, along one axis."""
+    parts = [m.left[axis] for m in f.missing if m.left]
+    return float(np.sqrt(np.mean(np.square(np.concatenate(parts)))))
+
+
 def _strengths(f: Findings) -> Table:
     """Return the table of the missing force of each axis."""
     header, share = ["axis", "missing, rms", "standard deviation, rms"], _flagged_shares(f)
+    left = _left_over_words(f)
+    if left:
+        header.append(f"{left}, rms")
     if share:
         header.append("share of the time flagged")
     rows = []
     for axis, strength in f.answer["where"]["axes"].items():
-        row = [axis, *format_in_one_unit([strength["rms"], strength["sd"]], strength["unit"])]
+        sizes = [strength["rms"], strength["sd"]]
+        if left:
+            sizes.append(_left_over_rms(f, axis))
+        row = [axis, *format_in_one_unit(sizes, strength["unit"])]
         if share:
             row.append(f"{100 * share.get(axis, 0.0):.0f} %")
         rows.append(row)
-    return Table("Force and moment that the retuned vessel does not explain", header, rows)
+    return Table("Force and moment that the vessel as written lacks", header, rows)
 
 
 def _interval_table(intervals: Sequence[IntervalEntry]) -> Table:
@@ -111,7 +154,7 @@ def _flagged_shares(f: Findings) -> dict[str, float]:
 
 def _missing_figures(f: Findings) -> Iterator[Block]:
     """Yield the missing force over time of the recordings that are flagged longest."""
-    intervals = f.answer["where"]["intervals"]
+    intervals, left = f.answer["where"]["intervals"], _left_over_words(f)
     flagged = {m.run: 0.0 for m in f.missing}
     for interval in intervals:
         if interval["run"] in flagged:
@@ -120,11 +163,11 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
     drawn: list[MissingForceCurve] = []
     for i in sorted(order[:MOST_MISSING_FIGURES]):
         drawn.append(f.missing[i])
-        if not f.has_added_effects:  # the corrected vessel is the retuned one
+        if not left:
             drawn[-1] = replace(f.missing[i], left={})
     looks = {
-        "missing": "missing force",
-        "left": "missing force of the corrected vessel",
+        "missing": "force that the vessel as written lacks",
+        "left": left,
         "band": "band of 2 standard deviations",
         "flag": "flagged: the band does not contain zero",
     }

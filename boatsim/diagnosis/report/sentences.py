@@ -71,9 +71,12 @@ def held_out_improvement_sentence(f: Findings) -> str:
     caution = ""
     if max(gains) <= f.setting("answer.least_improvement"):
         caution = "Treat this result as a hint: it hardly reduces the errors on held-out data. "
+    compared_with = "retuned vessel, whose own coefficients were refitted"
+    if f.answer.get("recalibration", {}).get("adopted") is False:
+        compared_with = "vessel as written, because refitted coefficients alone make it worse"
     return (
         f"{caution}{runs}, the corrected vessel has an rms error of {join_words(compared)}. The "
-        "comparison is with the retuned vessel, whose own coefficients were refitted."
+        f"comparison is with the {compared_with}."
     )
 
 
@@ -159,7 +162,11 @@ def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
     by_reason: dict[str, list[str]] = {}
     for entry in excluded:
         by_reason.setdefault(entry["reason"], []).append(name_in_words(entry["name"]))
-    return "; ".join(f"{join_words(names)} ({reason})" for reason, names in by_reason.items())
+    groups = []
+    for reason, names in by_reason.items():
+        stated = "stated: " if " = " in reason else ""  # a fact
+        groups.append(f"{join_words(names)} ({stated}{reason})")
+    return "; ".join(groups)
 
 
 def console_lines(f: Findings) -> list[str]:

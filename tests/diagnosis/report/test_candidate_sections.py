@@ -98,3 +98,25 @@ def test_a_force_near_zero_lies_inside_the_plot_of_a_large_positive_force() -> N
     zeros = re.findall(r'class="y" style="bottom:([\d.]+)%">0<', drawn)
     assert len(zeros) == len(curve.force)
     assert all(float(zero) > 2.0 for zero in zeros)  # per cent of the height of the panel
+
+
+@pytest.mark.parametrize(
+    ("findings", "begins"),
+    [
+        (sure(next_experiment={}), "These recordings decide the question"),
+        (sure(0.6, next_experiment={}), "No further recording of this kind settles"),
+    ],
+)
+def test_without_an_experiment_the_section_says_whether_the_question_is_decided(
+    findings: Findings, begins: str
+) -> None:
+    [text] = next_experiment_section(findings)
+    assert isinstance(text, Text) and text.words.startswith(begins)
+
+
+def test_an_unknown_cause_is_sought_by_changing_one_thing_at_a_time() -> None:
+    flagged = planar().answer["unknown"] | {"flag": True}
+    texts = [b.words for b in next_experiment_section(sure(unknown=flagged)) if isinstance(b, Text)]
+    assert any("one thing changed at a time" in text for text in texts)
+    texts = [b.words for b in next_experiment_section(sure()) if isinstance(b, Text)]
+    assert not any("one thing changed at a time" in text for text in texts)

@@ -6,7 +6,7 @@ import pytest
 
 from boatsim.diagnosis.answer.confirmation import effect_error_entry
 from boatsim.diagnosis.answer.findings import Findings
-from boatsim.diagnosis.answer.schema import RecalibrationEntry
+from boatsim.diagnosis.answer.schema import Answer, PossibleEntry, RecalibrationEntry
 from boatsim.diagnosis.open_set.confirmation import Errors
 from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.page import report_html, report_markdown
@@ -68,13 +68,27 @@ def test_an_effect_that_held_out_recordings_do_not_confirm_is_marked() -> None:
             "The retuned vessel keeps these numbers of the vessel file, because the recordings "
             "do not determine them well enough: linear damping (sway).",
         ),
+        (
+            {"adopted": True, "undetermined": [], "refitted": {}},
+            "The corrected vessel is the retuned one: it would predict the held-out recordings "
+            "worse with what is also possible (prop walk).",
+        ),
     ],
 )
-def test_coefficients_that_keep_their_value_are_stated(
+def test_coefficients_and_effects_that_are_not_adopted_are_stated(
     entry: RecalibrationEntry, expected: str
 ) -> None:
     findings = planar()
-    findings = replace(findings, answer={**findings.answer, "recalibration": entry})
+    possible: PossibleEntry = {
+        "name": "prop_walk",
+        "probability": 0.2,
+        "gain_nats": 9.0,
+        "words": "the propellers push the stern sideways",
+        "why": "several weak signs",
+        "in_patch": "corrected vessel is" not in expected,
+    }
+    answer: Answer = {**findings.answer, "recalibration": entry, "also_possible": [possible]}
+    findings = replace(findings, answer=answer)
     assert recalibration_sentences(findings)[0] == expected
     for text in everywhere(findings):
         assert expected in text

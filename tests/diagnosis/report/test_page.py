@@ -19,6 +19,7 @@ from boatsim.diagnosis.answer.verdict import NONE_TESTED, verdict_sentences
 from boatsim.diagnosis.description import Curve, FittedTerm
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.figures import part_with_largest_error
+from boatsim.diagnosis.report.force_section import missing_force_section
 from boatsim.diagnosis.report.page import LONGEST_HEADLINE
 from boatsim.diagnosis.report.sections import report_sections
 from boatsim.physics.content import load_class, shipped_content_names
@@ -37,6 +38,7 @@ from boatsim.view.formatting import (
     name_and_unit,
     sentence_in_per_cent,
 )
+from boatsim.view.page_blocks import Table, Text
 from boatsim.view.svg_plots import round_ticks, rows_of_extremes
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
@@ -1112,3 +1114,28 @@ def test_a_fault_of_the_log_is_answered_with_lines_to_copy_into_recording_toml()
     copied = unescape(re.search(r"<pre>(.*?)</pre>", html, re.DOTALL)[1])
     assert tomllib.loads(copied) == {"columns": {"psi_rad": "-psi_rad"}}
     assert '    [columns]\n    psi_rad = "-psi_rad"' in report.report_markdown(findings, sections)
+
+
+def test_the_missing_force_is_that_of_the_vessel_as_written_with_what_is_left_beside_it() -> None:
+    found = nothing()
+    answer = found.answer | {"recalibration": {"adopted": True, "undetermined": [], "refitted": {}}}
+    intervals = {"intervals": [{"run": "run_1", "from_s": 1.0, "to_s": 2.0, "axis": "surge"}]}
+    answer["where"] = found.answer["where"] | intervals
+    retuned = replace(found, answer=answer)
+    table, *_, text, _, _ = missing_force_section(retuned)
+    assert isinstance(table, Table) and table.caption.endswith("the vessel as written lacks")
+    curves = [m.left["surge"] for m in found.missing]
+    rms = float(np.sqrt(np.mean(np.concatenate(curves) ** 2)))
+    at = table.header.index("left with refitted coefficients, rms")
+    assert table.rows[0][at] == format_in_one_unit([0.214, rms], "N")[1]
+    assert isinstance(text, Text) and "coefficients of the vessel file cause" in text.words
+    assert "with refitted coefficients, the vessel model" in verdict_sentences(answer)
+
+
+@pytest.mark.parametrize(("value", "text"), [(0.02, "to starboard"), (-0.02, "to port")])
+def test_a_signed_value_is_stated_as_a_size_with_its_direction(value: float, text: str) -> None:
+    found = planar().answer
+    parameter = {"value": value, "sd": 0.004, "unit": "N"}
+    effect = found["effects"][0] | {"name": "steady_force", "parameters": {"sway_N": parameter}}
+    meaning = {"steady_force.sway_N": "constant side force, positive to starboard"}
+    assert f"0.0200 ± 0.0040 N {text})" in verdict_sentences(found | {"effects": [effect]}, meaning)
