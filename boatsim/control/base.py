@@ -63,6 +63,10 @@ class Controller(CheckedParameters):
     def reset(self) -> None:
         """Reset all internal states of the controller; called before each run."""
 
+    def channels(self) -> tuple[str, ...]:
+        """Return the command channels that the controller sets; none: any."""
+        return type(self).commands
+
     def initial_commands(self) -> dict[str, float]:
         """Return the controller's commands before its first step; missing ones are neutral."""
         return {}

@@ -79,7 +79,8 @@ class CompiledController(Controller):
 
     `boats` are the rows to process. `settings` contains the parameters by name, `memory` is of the
     type `memory_type` and zero at the start; `sense` has the fields of `Sense`, `goal` those of
-    `goals`, and `sent` those of `commands`, which the law fills in.
+    `goals`, and `sent` those of `commands`, which the law fills in; `channels` are the command
+    channels of the vessel in the same order.
     """
 
     law: ClassVar[Callable[[NDArray[np.int64], Records, Records, Records, Records, Records], None]]
@@ -134,7 +135,7 @@ class CompiledController(Controller):
         self._sense[0] = tuple([getattr(sense, n) for n in SENSE_FIELDS])
         self._goal[0] = self.goal_values(goal)
         type(self).law(ONE, self._settings, self._memory, self._sense, self._goal, self._sent)
-        return dict(zip(type(self).commands, self._sent[0].item(), strict=True))
+        return dict(zip(self.channels(), self._sent[0].item(), strict=True))
 
     @property
     def memory(self) -> Records:

@@ -92,6 +92,7 @@ class VesselModel:
         thrusters: Thrusters and rudders.
         drives: Command channels of each of them, in the same order.
         wind: Wind loads; None if the vessel has no wind coefficients.
+        lag: Longest sum of lags and delays between a command and its thrust [s].
     """
 
     name: str
@@ -101,6 +102,7 @@ class VesselModel:
     thrusters: tuple[Thruster, ...]
     drives: tuple[DriveCommands, ...]
     wind: WindLoads | None = None
+    lag: float = 0.0
 
     def without(self, names: Sequence[str]) -> "VesselModel":
         """Return the model without some thrusters, which are out of service.

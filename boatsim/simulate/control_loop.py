@@ -63,7 +63,7 @@ class ControlLoop:
         self._on_interval = on_interval
         vessel = scenario.vessel
         #: channels that the controller sets, and their places among the vessel's commands
-        self.channels = list(type(scenario.controller).commands or vessel.commands)
+        self.channels = list(scenario.controller.channels() or vessel.commands)
         self._places = [list(vessel.commands).index(name) for name in self.channels]
         self.sent: dict[str, float] = {}
         self._beyond: list[str] = []

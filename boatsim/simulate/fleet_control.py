@@ -174,7 +174,7 @@ class CompiledControl:
         self._felt, self._wanted, self.orders = (
             view_as_array(r) for r in (self._sense, self._goal, self._sent)
         )
-        self.places = indices_of_names(kind.commands, boat.inputs)
+        self.places = indices_of_names(controllers[0].channels(), boat.inputs)
         self._low, self._high = aboard.limits
         self._compile()
 

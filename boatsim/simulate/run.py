@@ -78,7 +78,7 @@ class Simulation:
         self.engine = engine or build_engine(scenario, self._seed)
         seeds = np.random.SeedSequence(self._seed).spawn(2 + len(scenario.additional_sensors))
         imu, marking, *others = map(np.random.default_rng, seeds)
-        channels = list(type(scenario.controller).commands or scenario.vessel.commands)
+        channels = list(scenario.controller.channels() or scenario.vessel.commands)
         self._camera = CameraLog(scenario, channels, marking, self._make_table)
         goal_at = self._options.goal_source or scenario.goal_at
         self._loop = ControlLoop(

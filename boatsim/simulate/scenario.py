@@ -13,7 +13,6 @@ from pydantic import Field, field_validator, model_validator
 
 from boatsim.arguments import check_instance, checked_name
 from boatsim.control.base import Controller
-from boatsim.control.vessel_model import ModelBasedController
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
@@ -27,7 +26,7 @@ from boatsim.simulate.camera_metric import CameraMetricSet
 from boatsim.simulate.cases import ScenarioLocation, read_scenario
 from boatsim.simulate.metric import MetricSet
 from boatsim.simulate.sensing import Sensor, Sensors
-from boatsim.simulate.vessel_model import vessel_model
+from boatsim.simulate.vessel_model import introduce_vessel
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, MetricSet, Sensor)
@@ -313,11 +312,10 @@ def from_table(
         aboard = _additional_sensors(file.sensor, path.parent)
         camera = _create_with_context("camera", lambda: make_camera(vessel, file.camera))
         measure = _load_metric_set(file.measure, path.parent)
+        introduce_vessel(controller, vessel)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
         _check_metrics(file, camera, measure)
-        if isinstance(controller, ModelBasedController):
-            controller.use_vessel_model(vessel_model(vessel))
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
     return Scenario(
@@ -413,7 +411,7 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
         raise BadInput(
             f"[[goal]] from = {starts[-1]:g} s; the run ends at duration = {file.duration:g} s"
         )
-    if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
+    if unknown := [c for c in controller.channels() if c not in vessel.commands]:
         raise BadInput(
             f"controller {file.controller['use']} sets {unknown[0]}; "
             f"{vessel.unknown_command_message(unknown[0])}"

@@ -26,6 +26,7 @@ from boatsim.simulate.interval_map import PLAY, SUBSTEPS
 from boatsim.simulate.linearisation import LinearVessel, linearise_vessel
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.stepper import State
+from boatsim.simulate.vessel_model import introduce_vessel
 
 LOWEST = 1e-5  # [rad/s] lowest frequency, below the slowest drift of a boat at rest (0.004 1/s)
 POINTS = 20000  # frequencies of the analysis
@@ -78,7 +79,8 @@ def margins_on_vessel(controller: Controller, vessel: Vessel) -> list[VesselMarg
             f"controller {snake_case(type(controller).__name__)!r} describes no operating_points "
             f"(these do: {', '.join(able)})"
         )
-    for name in type(controller).commands:
+    introduce_vessel(controller, vessel)
+    for name in controller.channels():
         if name not in vessel.commands:
             raise BadInput(
                 f"controller {snake_case(type(controller).__name__)} does not fit {vessel.name}: "

@@ -4,20 +4,28 @@ from math import inf, sqrt
 
 import numpy as np
 
+from boatsim.control.base import Controller
 from boatsim.control.thrust_allocation import (
     Thruster,
     azimuth_thruster,
     fixed_thruster,
     rudder,
 )
-from boatsim.control.vessel_model import DriveCommands, VesselModel, WindLoads
+from boatsim.control.vessel_model import (
+    DriveCommands,
+    ModelBasedController,
+    VesselModel,
+    WindLoads,
+)
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Effect, Force, Inertia, make_motion
+from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.effects.fan_wind import AIR_DENSITY
 from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.rudder import Rudder
 from boatsim.physics.effects.servo import Servo
+from boatsim.physics.effects.thrust_lag import ThrustLag
 from boatsim.physics.effects.thruster import Thruster as ThrusterEffect
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import AXES
@@ -65,7 +73,43 @@ def vessel_model(vessel: Vessel) -> VesselModel:
         tuple(thrusters),
         tuple(drives),
         wind_loads(vessel),
+        command_lag(vessel),
     )
+
+
+def introduce_vessel(controller: Controller, vessel: Vessel) -> None:
+    """Give a controller that needs one a model of its vessel.
+
+    Args:
+        controller: The controller.
+        vessel: The vessel.
+
+    Raises:
+        BadInput: The vessel has no such model, or does not fit the controller.
+    """
+    if isinstance(controller, ModelBasedController):
+        controller.use_vessel_model(vessel_model(vessel))
+
+
+def command_lag(vessel: Vessel) -> float:
+    """Return the longest sum of lags and delays between a command and its actuator [s].
+
+    Args:
+        vessel: The vessel.
+    """
+    sums = dict.fromkeys(vessel.commands, 0.0)
+    for effect in vessel.effects:
+        if isinstance(effect, CommandDelay):
+            seconds = effect.delay
+        elif isinstance(effect, ThrustLag):
+            seconds = effect.time_constant
+        elif isinstance(effect, Servo):
+            seconds = effect.lag
+        else:
+            continue
+        for channel in set(vessel.target_actuators(effect)) & set(sums):
+            sums[channel] += seconds
+    return max(sums.values(), default=0.0)
 
 
 def wind_loads(vessel: Vessel) -> WindLoads | None:

@@ -156,7 +156,7 @@ def print_residual(diagnosis: Diagnosis) -> None:
         line += f"; in {structure['axis']} it correlates with {structure['goes_with']}"
     print(line)
     for term in answer["described"]:
-        print(f"  described: {term}")
+        print(f"  described: {term['statement']}")
 
 
 def open_runs(runs: dict[str, Path], vessel_name: str) -> dict[str, Recording]:

@@ -14,7 +14,17 @@ from boatsim.diagnosis.symbolic.curves import term_force_curve
 from boatsim.diagnosis.symbolic.grammar import longest_recording_duration
 from boatsim.diagnosis.symbolic.term_forces import fitted_recordings
 from boatsim.diagnosis.symbolic.term_selection import Formula, refit_without_term, select_terms
+from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.progress import Report, ignore_progress
+
+# Axis of a force -> family of the signals along it; that of all others is the position. No family
+# contains the pitch.
+FAMILY_OF_AXIS = {
+    "heave": "heave_rms_m",
+    "roll": "roll_rms_rad",
+    "pitch": "",
+    "yaw": "heading_rms_rad",
+}
 
 
 def describe_residual_force(
@@ -68,7 +78,8 @@ def _general(
 ) -> Formula:
     """Return the formula with the terms that reduce the errors on held-out recordings.
 
-    Terms that make simulations of one group of these much worse are removed, too.
+    Terms that make simulations of one group of these much worse are removed, too, and so are those
+    with which the signals along their own axis are worse than without any term.
 
     Terms are removed in the order of increasing evidence; events of single recordings remain. The
     last choice is the fit without any term, if terms have replaced effects of it.
@@ -91,11 +102,17 @@ def _general(
     if not before:  # without held-out data no term is confirmed
         return events_only
     misfits, last = [], chain[-1].fit
+    without = generalization.mean_square_errors(runs, str(len(chain) - 1))
     for k, formula in enumerate(chain):
-        misfit = generalization.error_ratio(generalization.mean_square_errors(runs, str(k)), before)
+        errors = generalization.mean_square_errors(runs, str(k))
+        misfit = generalization.error_ratio(errors, before)
         harmed = generalization.harmed_groups(problem, last, formula.fit, held_out, horizon)
-        if harmed or not np.isfinite(misfit):  # or the simulation diverges
+        worse = problem.config.validate.worse**2
+        if not np.isfinite(misfit) or harmed:  # or the simulation diverges
             misfit = np.inf
+        for family in _own_families(formula):
+            if family in errors and np.mean(errors[family]) > worse * np.mean(without[family]):
+                misfit = np.inf
         misfits.append(misfit)
     improvement = problem.config.describe.general_improvement
     best = len(chain) - 1
@@ -103,3 +120,13 @@ def _general(
         if misfits[k] < improvement * misfits[best]:
             best = k
     return chain[best]
+
+
+def _own_families(formula: Formula) -> set[str]:
+    """Return the families of signals along the axes of those terms that are no events."""
+    found = set[str]()
+    for term in formula.terms.values():
+        if not term.run:
+            axis = term.axis if isinstance(term, DescribedForce) else "thrust"
+            found.add(FAMILY_OF_AXIS.get(axis, "position_rms_m"))
+    return found

@@ -13,6 +13,7 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.fleet import Fleet, FleetLog
 from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.vessel_model import introduce_vessel
 from boatsim.sweeps.robustness.disturbances import Disturbance
 from boatsim.sweeps.robustness.drawn_boats import DrawnBoats
 from boatsim.sweeps.robustness.manoeuvre import Manoeuvre, TrackedSignal, integration_step
@@ -59,7 +60,8 @@ def check_controller(name: str, controller: Controller, vessel: Vessel) -> None:
             f"controller {name!r} has no compiled law, so that it cannot steer a fleet "
             f"(these have one: {', '.join(able)})"
         )
-    for channel in type(controller).commands:
+    introduce_vessel(controller, vessel)
+    for channel in controller.channels():
         if channel not in vessel.commands:
             raise BadInput(
                 f"controller {name} does not fit {vessel.name}: "

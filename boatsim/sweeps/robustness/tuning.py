@@ -25,6 +25,7 @@ from boatsim.learn.distributions import SampledParameter
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, ignore_progress
+from boatsim.simulate.vessel_model import introduce_vessel
 from boatsim.sweeps.robustness.benchmark import (
     add_effects,
     check_boats,
@@ -252,7 +253,9 @@ class _Search:
 
     def with_gains(self, gains: Mapping[str, float]) -> Controller:
         """The controller with some gains."""
-        return replace(self.controller, **gains)
+        controller = replace(self.controller, **gains)
+        introduce_vessel(controller, self.vessel)
+        return controller
 
     def judged(self, gains: Mapping[str, float], boats: DrawnBoats) -> Design:
         """A design with its results on boats."""
