@@ -168,7 +168,6 @@ class L1Differential(CompiledController, ModelBasedController):
         Raises:
             BadInput: A parameter is out of bounds.
         """
-        self._design: dict[str, float] = {}  # values of the parameters that are not given
         self._pair: tuple[Records, Records] = np.zeros(1, PROPELLER), np.zeros(1, PROPELLER)
         self._channels: tuple[str, ...] = type(self).commands
         super().__post_init__()
@@ -196,7 +195,7 @@ class L1Differential(CompiledController, ModelBasedController):
         speed = SPEED * sqrt(GRAVITY * model.length)
         if drag[0] > 0.0:
             speed = min(speed, THRUST_SHARE * self._full_thrust() / drag[0])
-        self._design = {
+        design = {
             "pole": pole,
             "yaw_bandwidth": bandwidth,
             "surge_bandwidth": SURGE_SHARE * pole,
@@ -210,16 +209,10 @@ class L1Differential(CompiledController, ModelBasedController):
             "turn_rate": TURN_RATE / froude,
             "blind_surge": max(drag[0], 0.0),
         }
+        for name, value in design.items():
+            if getattr(self, name) is UNSET:
+                setattr(self, name, value)
         self.reset()
-
-    def value(self, name: str) -> float:
-        """Return a parameter: the given one, or the one that follows from the vessel.
-
-        Args:
-            name: Name of the parameter.
-        """
-        given = float(getattr(self, name))
-        return self._design.get(name, given) if getattr(self, name) is UNSET else given
 
     def channels(self) -> tuple[str, ...]:
         """Return the command channels of the propellers, port first."""
@@ -232,7 +225,7 @@ class L1Differential(CompiledController, ModelBasedController):
             count: Number of equal controllers.
         """
         names = [f.name for f in fields(self) if "param" in f.metadata]
-        row = tuple(map(self.value, names))
+        row = tuple(float(getattr(self, name)) for name in names)
         records = np.full(count, np.array([row], record_type(*names)))
         port, starboard = self._pair
         return add_nested_records(records, port=port, starboard=starboard)
@@ -249,7 +242,7 @@ class L1Differential(CompiledController, ModelBasedController):
 
     def largest_goals(self) -> Mapping[str, float]:
         """Return the joystick demands at full stick: largest speed [m/s] and turn rate [rad/s]."""
-        return {"surge_mps": self.value("rated_surge"), "yaw_radps": self.value("rated_yaw")}
+        return {"surge_mps": self.rated_surge, "yaw_radps": self.rated_yaw}
 
     def operating_points(self) -> tuple[OperatingPoint, ...]:
         """Return the steady motions at which the controller's loops are analysed on a vessel.
@@ -257,11 +250,11 @@ class L1Differential(CompiledController, ModelBasedController):
         Raises:
             BadInput: The controller has no model of a vessel.
         """
-        if not self._design:
+        if self.pole is UNSET or not self._pair[0]["side"][0]:
             raise BadInput("l1_differential needs a model of its vessel; use_vessel_model gives it")
-        speed, rate = self.value("rated_surge"), self.value("rated_yaw")
+        speed, rate = self.rated_surge, self.rated_yaw
         surge = self._loop("u", "X", "mass", "surge_bandwidth", 0.0)
-        yaw = self._loop("r", "N", "inertia", "yaw_bandwidth", self.value("heading_gain"))
+        yaw = self._loop("r", "N", "inertia", "yaw_bandwidth", self.heading_gain)
         ahead, turn = {"surge_mps": AHEAD * speed}, {"yaw_radps": TURN * rate}
         pulse, blind = {"yaw_radps": YAW_PULSE * rate}, ("u", "v")
         faster = {"surge_mps": SURGE_PULSE * speed}
@@ -276,9 +269,9 @@ class L1Differential(CompiledController, ModelBasedController):
     ) -> FeedbackLoop:
         """Feedback of one velocity to the force or moment along its axis."""
         law = sampled_l1_law(
-            self.value("pole"),
-            self.value(inertia),
-            self.value(bandwidth),
+            self.pole,
+            float(getattr(self, inertia)),
+            float(getattr(self, bandwidth)),
             heading_gain,
             self.period,
         )

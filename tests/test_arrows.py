@@ -21,7 +21,8 @@ from benchmarks.arrows import (
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation control.jet "
-    "control.identification control.helm control.compiled control.axis control.gradient_adaptation control.joystick "
+    "control.identification control.helm control.compiled control.axis control.gradient_adaptation control.joystick"
+    " control.differential "
     "control.motor_check control.operating_points control.passive_observer control.quadratic_program "
     "control.reference_motion control.thrust_allocation control.vessel_model control.dynamic_positioning "
     "control.guidance control.lag_joystick control.linear_model control.linear_quadratic control.paths "

@@ -53,7 +53,12 @@ class VesselMargin:
 
     @property
     def difference(self) -> float:
-        """Relative difference of the analytic from the simulated delay margin."""
+        """Relative difference of the analytic from the simulated delay margin.
+
+        It is 0 if both exceed the longest delay that is simulated.
+        """
+        if self.simulated_delay_s == inf and self.delay_s >= LARGEST_DELAY:
+            return 0.0
         if self.simulated_delay_s == 0.0:
             return 0.0 if self.delay_s == 0.0 else inf
         return self.delay_s / self.simulated_delay_s - 1.0
@@ -377,13 +382,12 @@ def format_vessel_margins(found: Sequence[VesselMargin], vessel: Vessel) -> str:
     for row in found:
         ignored.update(row.ignored)
         phase = "unstable" if row.delay_s == 0.0 else f"{row.phase_deg:.0f}"
-        values = (
-            f"{row.crossover:.2f}",
-            phase,
-            f"{row.delay_s:.3f}",
-            f"{row.simulated_delay_s:.3f}",
-            f"{100.0 * row.difference:+.1f} %",
-        )
+        simulated, difference = f"{row.simulated_delay_s:.3f}", f"{100.0 * row.difference:+.1f} %"
+        if row.simulated_delay_s == inf:
+            simulated = f"over {LARGEST_DELAY:g}"
+            if row.difference == 0.0:
+                difference = "-"
+        values = (f"{row.crossover:.2f}", phase, f"{row.delay_s:.3f}", simulated, difference)
         cells = [f"{v:>{len(h)}}" for v, h in zip(values, head[1:], strict=True)]
         lines.append("  ".join((f"{row.point:{width}}", *cells)))
     if ignored:

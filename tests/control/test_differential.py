@@ -1,6 +1,8 @@
 """Two fixed propellers: their control allocation against exact solutions and brute force, and the
 L1 joystick controller that uses it, on boats with weak propellers."""
 
+from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -18,7 +20,11 @@ from boatsim.physics.content import load_class
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.vessel_margins import margins_on_vessel
+from boatsim.simulate.vessel_margins import (
+    VesselMargin,
+    format_vessel_margins,
+    margins_on_vessel,
+)
 from boatsim.simulate.vessel_model import command_lag, introduce_vessel
 from boatsim.sweeps.robustness.closed_loops import runs_in_a_fleet
 
@@ -115,13 +121,13 @@ def test_gains_follow_from_the_lag_and_the_damping_of_the_vessel() -> None:
     found = load_class("controller", NAME)()
     introduce_vessel(found, otter)
     delay = 0.5 * found.period + 0.1 + 0.3 * (2.0 / 1.2) ** 0.5
-    assert found.value("yaw_bandwidth") == pytest.approx(0.5 / delay)
-    assert found.value("pole") == pytest.approx(0.75 * 0.5 / delay)  # a hull of much damping
-    assert found.value("mass") == pytest.approx(55.0 + 5.28152101)
+    assert found.yaw_bandwidth == pytest.approx(0.5 / delay)
+    assert found.pole == pytest.approx(0.75 * 0.5 / delay)  # a hull of much damping
+    assert found.mass == pytest.approx(55.0 + 5.28152101)
     slow = load_class("controller", NAME).from_settings({"lag": 2.0, "pole": 0.1})
     introduce_vessel(slow, otter)
-    assert slow.value("yaw_bandwidth") < 0.25 * found.value("yaw_bandwidth")
-    assert slow.value("pole") == 0.1
+    assert slow.yaw_bandwidth < 0.25 * found.yaw_bandwidth
+    assert slow.pole == 0.1
 
 
 def test_it_steers_fleets_and_other_drives_are_refused_in_one_line() -> None:
@@ -131,6 +137,14 @@ def test_it_steers_fleets_and_other_drives_are_refused_in_one_line() -> None:
         introduce_vessel(kind(), load_vessel("joystick_boat"))
     with pytest.raises(BadInput, match="needs a model of its vessel"):
         kind().operating_points()
+
+
+def test_a_margin_beyond_the_longest_simulated_delay_is_no_disagreement() -> None:
+    long = VesselMargin("surge", 0.2, 90.0, 7.2, inf)
+    assert long.difference == 0.0
+    assert replace(long, delay_s=3.0).difference == -1.0
+    cells = format_vessel_margins([long], load_vessel("otter")).splitlines()[-1].split()
+    assert cells[-3:] == ["over", "5", "-"]
 
 
 @pytest.mark.slow

@@ -182,6 +182,7 @@ def tune(
     check_boats(count, spread)
     if budget < 1:
         raise BadInput(f"budget = {budget}; allowed is 1 or more")
+    check_controller(name, controller, vessel)
     ranges = gain_ranges(name, controller, gains)
     vessel = with_effects_of(sampled, vessel)
     search = _Search(name, controller, vessel, conditions)
