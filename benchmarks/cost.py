@@ -1,9 +1,12 @@
-"""Measure the cost of a diagnosis: `python -m benchmarks.cost [--quick]`.
+"""Measure the cost of a diagnosis: `python -m benchmarks.cost [--quick | --logs]`.
 
 It prints CPU seconds and peak memory of complete `boatsim diagnose` commands, including reading and
 writing of files, each in a separate process. The recordings are runs of trial_boat on the compiled
 engine with random multi-level joystick steps and camera noise. `analysis` is the wall time without
 start and files. The last rows are the first diagnosis with an empty cache and its repetition.
+
+--logs measures sets of three recordings at 10 Hz instead, as owners have them: half an hour of a
+planar boat, and eleven minutes of a boat in six degrees of freedom.
 """
 
 import argparse
@@ -13,20 +16,33 @@ import resource
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from boatsim.physics import vessel
+from boatsim.physics.signals import STATE
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.simulate.batch import Batch
+from boatsim.simulate.run import run as simulate
+from boatsim.simulate.scenario import Scenario
 
 BOAT = "trial_boat"
 HELD = 5 / 6  # [s] between joystick steps
 STEP = 1 / 60  # [s] integration step
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
 TRIAL = (80.0, 6.0)  # [s], [Hz] of a practice trial
+# rows of --logs -> vessel, minutes of each of three recordings
+LOGS = {"3 x 10 min, planar": ("blueboat", 10.0), "3 x 3.7 min, six freedoms": ("otter", 3.7)}
+LOG_RATE, LEVELS_HELD, LEVEL = 10.0, 8.0, 0.6  # [Hz], [s], share of the ranges of the channels
+# what the vessel file lacks, so that the search has something to find
+MISSING = [
+    {"use": "current", "north": 0.1, "east": -0.15},
+    {"use": "thrust_imbalance", "fraction": 0.1},
+]
+LOG_NOISE = {"m": 0.02, "rad": 0.005}  # of positions and angles
 COLUMNS = {
     "cpu": "CPU [s]",
     "wall": "analysis [s]",
@@ -50,12 +66,40 @@ def simulate_joystick_run(seconds: float, rate: float, seed: int) -> Recording:
     return Recording(f"{seed}", t, signals | dict(zip(boat.commands, commands.T, strict=True)))
 
 
-def diagnose_and_print_cost(run: str, out: str) -> None:
+def simulate_log(name: str, seconds: float, seed: int) -> Recording:
+    """Return a run of a vessel under random levels of its commands, with noise of its pose."""
+    rng, boat = np.random.default_rng(seed), vessel.load_vessel(name)
+    goals = []
+    for begin in np.arange(0.0, seconds, LEVELS_HELD).tolist():
+        levels = {"from": begin}
+        for channel, command in boat.commands.items():
+            levels[channel] = float(LEVEL * rng.uniform(command.low, command.high))
+        goals.append(levels)
+    scenario = Scenario.from_settings(
+        vessel=boat,
+        controller={"use": "open_loop"},
+        sensors={"ideal": True},
+        engine="compiled",
+        duration=seconds,
+        log=1.0 / LOG_RATE,
+        goal=goals,
+        effect=MISSING,
+    )
+    recorded = simulate(scenario).recording
+    signals = {channel: recorded[channel] for channel in boat.commands}
+    for signal in STATE:
+        if not signal.rate and signal.column in recorded.signals and signal.axis in boat.dof:
+            noise = LOG_NOISE[signal.column.rpartition("_")[2]]
+            signals[signal.column] = recorded[signal.column] + rng.normal(0, noise, len(recorded))
+    return Recording(f"{name}_{seed}", recorded.t, signals)
+
+
+def diagnose_and_print_cost(boat: str, out: str, *runs: str) -> None:
     """Diagnose in this process and print the cost as JSON."""
     from boatsim.cli import app
 
     try:
-        app(["diagnose", run, "--vessel", BOAT, "--out", out])
+        app(["diagnose", *runs, "--vessel", boat, "--out", out])
     except SystemExit as left:
         rss = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # Linux counts in KiB
         written = sum(f.stat().st_size for f in Path(out).iterdir()) / 2**20
@@ -63,17 +107,26 @@ def diagnose_and_print_cost(run: str, out: str) -> None:
         print(json.dumps(cost))
 
 
-def measure_cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, float]:
+def measure_cost(
+    runs: Recording | Sequence[Recording],
+    folder: Path,
+    cache: Path | None = None,
+    boat: str = BOAT,
+) -> dict[str, float]:
     """Return CPU [s], wall time [s], peak memory [MB] and size of the files [MB] of one command."""
-    write_csv(run, folder / "run.csv")
+    files = []
+    for run in [runs] if isinstance(runs, Recording) else runs:
+        files.append(str(folder / f"run_{run.name}.csv"))
+        write_csv(run, files[-1])
     environment = os.environ | ({"BOATSIM_CACHE": str(cache)} if cache else {})
     command = [
         sys.executable,
         "-m",
         "benchmarks.cost",
         "--one",
-        str(folder / "run.csv"),
+        boat,
         str(folder / "out"),
+        *files,
     ]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
@@ -83,7 +136,17 @@ def measure_cost(run: Recording, folder: Path, cache: Path | None = None) -> dic
 
 def print_row(name: str, found: dict[str, float]) -> None:
     """Print a row of the table."""
-    print(f"{name:28s}" + "".join(f"{found[key]:14.1f}" for key in COLUMNS), flush=True)
+    print(f"{name:34s}" + "".join(f"{found[key]:14.1f}" for key in COLUMNS), flush=True)
+
+
+def print_logs() -> None:
+    """Print the rows of sets of three recordings, each with an empty cache and with a filled one."""
+    for name, (boat, minutes) in LOGS.items():
+        with TemporaryDirectory() as base:
+            folder = Path(base)
+            runs = [simulate_log(boat, 60.0 * minutes, seed) for seed in range(3)]
+            for state in ("", ", again"):
+                print_row(f"{name}{state}", measure_cost(runs, folder, folder / "cache", boat))
 
 
 def main() -> None:
@@ -92,11 +155,14 @@ def main() -> None:
     parser.add_argument(
         "--quick", action="store_true", help="the shortest runs only, and no cold start"
     )
-    parser.add_argument("--one", nargs=2, metavar=("RUN", "OUT"), help=argparse.SUPPRESS)
+    parser.add_argument("--logs", action="store_true", help="sets of three recordings only")
+    parser.add_argument("--one", nargs="+", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
         return diagnose_and_print_cost(*given.one)
-    print(" " * 28 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
+    print(" " * 34 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
+    if given.logs:
+        return print_logs()
     with TemporaryDirectory() as base:
         folder = Path(base)
         measure_cost(

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import exp, isnan, nan
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from boatsim.control.allocation import HEADING, command_outboards, thrust_difference_for_sway
@@ -9,6 +10,7 @@ from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record_type, unlocked
 from boatsim.control.joystick import demanded_yaw_rate
 from boatsim.control.lag_joystick import LagJoystick, actuator_output
+from boatsim.control.operating_points import AxisLaw
 
 # velocity, total disturbance [acceleration], modelled force of the actuators [N or N m]
 OBSERVER = record_type("velocity", "disturbance", "force")
@@ -103,3 +105,19 @@ class Adrc(LagJoystick):
             "sigma_yaw_Nm": Estimate(self.inertia * float(yaw), nan, nan),
             "sigma_surge_N": Estimate(self.mass * float(surge), nan, nan),
         }
+
+    def axis_law(self, axis: str) -> AxisLaw:
+        """Return the law of one axis, without limits, as a function of its state and inputs.
+
+        Args:
+            axis: "yaw" or "surge".
+        """
+        inertia = self.inertia if axis == "yaw" else self.mass
+
+        def step(a: SimpleNamespace, measured: float, applied: float, wanted: float) -> float:
+            force: float = rejecting_force.py_func(
+                self, a, measured, applied, True, wanted, inertia
+            )
+            return force
+
+        return step

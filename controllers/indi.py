@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from math import exp, isnan
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from boatsim.control.allocation import HEADING, command_outboards, thrust_difference_for_sway
 from boatsim.control.compiled import merged, record_type, unlocked
 from boatsim.control.joystick import demanded_yaw_rate
 from boatsim.control.lag_joystick import LagJoystick, actuator_output
+from boatsim.control.operating_points import AxisLaw
 
 # filtered velocity, modelled force of the actuators and the same through the filter [N or N m]
 FILTERS = record_type("velocity", "force", "filtered")
@@ -93,3 +95,19 @@ class Indi(LagJoystick):
     tuned: ClassVar[tuple[str, ...]] = ("bandwidth", "pole")
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
+
+    def axis_law(self, axis: str) -> AxisLaw:
+        """Return the law of one axis, without limits, as a function of its state and inputs.
+
+        Args:
+            axis: "yaw" or "surge".
+        """
+        inertia = self.inertia if axis == "yaw" else self.mass
+
+        def step(a: SimpleNamespace, measured: float, applied: float, wanted: float) -> float:
+            force: float = incremental_force.py_func(
+                self, a, measured, applied, True, wanted, inertia
+            )
+            return force
+
+        return step

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import isnan, sqrt
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from boatsim.control.allocation import HEADING, command_outboards, thrust_difference_for_sway
@@ -10,6 +11,7 @@ from boatsim.control.joystick import demanded_yaw_rate
 from boatsim.control.lag_joystick import LagJoystick, actuator_output
 from boatsim.control.linear_model import read_linear_model
 from boatsim.control.linear_quadratic import axis_parameters, integral_gains
+from boatsim.control.operating_points import AxisLaw
 from boatsim.physics.base import UNSET, param
 
 # integral of the error [m or rad], modelled force of the actuators and missed force [N or N m]
@@ -151,3 +153,18 @@ class Lqi(LagJoystick):
             for name, value in gains._asdict().items():
                 if getattr(self, f"{axis}_{name}") is UNSET:
                     setattr(self, f"{axis}_{name}", value)
+
+    def axis_law(self, axis: str) -> AxisLaw:
+        """Return the law of one axis, without limits, as a function of its state and inputs.
+
+        Args:
+            axis: "yaw" or "surge".
+        """
+        gains = [getattr(self, f"{axis}_{name}") for name in ("integral", "velocity", "force")]
+
+        def step(a: SimpleNamespace, measured: float, applied: float, wanted: float) -> float:
+            a.missed = 0.0  # of the limits
+            output = regulating_force.py_func(self, a, measured, applied, wanted, *gains)
+            return float(output)
+
+        return step

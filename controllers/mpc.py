@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import exp, isnan, nan
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 from boatsim.control.allocation import (
@@ -16,6 +17,7 @@ from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record_type, unlocked
 from boatsim.control.joystick import demanded_yaw_rate
 from boatsim.control.lag_joystick import LagJoystick, actuator_output
+from boatsim.control.operating_points import AxisLaw
 from boatsim.control.receding_horizon import predictive_gains
 from boatsim.physics.base import UNSET, param
 
@@ -143,3 +145,19 @@ class Mpc(LagJoystick):
             "sigma_yaw_Nm": Estimate(self.inertia * float(yaw), nan, nan),
             "sigma_surge_N": Estimate(self.mass * float(surge), nan, nan),
         }
+
+    def axis_law(self, axis: str) -> AxisLaw:
+        """Return the law of one axis, without limits, as a function of its state and inputs.
+
+        Args:
+            axis: "yaw" or "surge".
+        """
+        inertia = self.inertia if axis == "yaw" else self.mass
+
+        def step(a: SimpleNamespace, measured: float, applied: float, wanted: float) -> float:
+            force: float = predictive_force.py_func(
+                self, a, measured, applied, True, wanted, inertia
+            )
+            return force
+
+        return step

@@ -11,6 +11,13 @@ from typing import ClassVar
 
 from boatsim.control.allocation import STICK, Outboards
 from boatsim.control.compiled import CompiledController, merged
+from boatsim.control.joystick import joystick_operating_points, outboard_loop
+from boatsim.control.operating_points import (
+    AxisLaw,
+    FeedbackLoop,
+    OperatingPoint,
+    sampled_linear_law,
+)
 from boatsim.physics.base import UNSET, param
 
 # [s] delay or lag that a boat may have in addition to the known ones. With it, 95 % of randomly
@@ -118,6 +125,31 @@ class LagJoystick(Outboards, CompiledController):
             self.pole = POLE_SHARE * self.bandwidth
         if self.heading_gain is UNSET:
             self.heading_gain = HEADING_SHARE * self.bandwidth
+
+    def axis_law(self, axis: str) -> AxisLaw:
+        """Return the law of one axis, without limits, as a function of its state and inputs.
+
+        Args:
+            axis: "yaw" or "surge".
+        """
+        raise NotImplementedError
+
+    def operating_points(self) -> tuple[OperatingPoint, ...]:
+        """Return the steady motions at which the controller's loops are analysed on a vessel."""
+        return joystick_operating_points(self, self.yaw_loop, self._loop("surge", 0.0, False))
+
+    def yaw_loop(self, swaying: bool) -> FeedbackLoop:
+        """Return the feedback of the yaw rate and of its integral, the heading.
+
+        Args:
+            swaying: Whether the boat sways, so that the steering angles give the moment.
+        """
+        return self._loop("yaw", self.heading_gain, swaying)
+
+    def _loop(self, axis: str, heading_gain: float, swaying: bool) -> FeedbackLoop:
+        names = type(self).memory_type[axis].names or ()
+        law = sampled_linear_law(self.axis_law(axis), names, heading_gain, self.period)
+        return outboard_loop(self, {"yaw": "N", "surge": "X"}[axis], swaying, law)
 
     def largest_goals(self) -> dict[str, float]:
         """Return the joystick demands at full stick: largest speeds [m/s] and turn rate [rad/s]."""

@@ -6,9 +6,10 @@ through the control allocation to commands. The vessel closes it: its actuators,
 hull are linearised by the analysis.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -18,6 +19,9 @@ PULSE = 1.0  # [s] length of the set-point pulse that excites a loop; below the 
 Slopes = Callable[[Mapping[str, float]], Mapping[str, float]]
 # of z: response of the output to position, to velocity and to the force that was applied
 SampledLaw = Callable[[Complex], tuple[Complex, Complex, Complex]]
+# of the state (advanced in place), the measured velocity, the force that was applied over the last
+# period, and the set point of the velocity: the force or moment of the next period
+AxisLaw = Callable[[SimpleNamespace, float, float, float], float]
 
 
 @dataclass(frozen=True)
@@ -93,5 +97,37 @@ def sampled_pid_law(kp: float, ki: float, kd: float, inertia: float, period: flo
         total = period / (1.0 - 1.0 / z)
         nothing = np.zeros_like(z)
         return nothing, inertia * ((kp + ki * total) * total + kd), nothing
+
+    return response
+
+
+def sampled_linear_law(
+    step: AxisLaw, names: Sequence[str], heading_gain: float, period: float
+) -> SampledLaw:
+    """Return the response of a linear law of one axis, in z = e^(sT), from its own steps.
+
+    The law is evaluated at unit values of its state and inputs, which gives its state-space model.
+    Its set point is the demanded rate, -heading gain x the sum of the measured rates.
+
+    Args:
+        step: The law, linear near zero and after its first step.
+        names: Names of the numbers of its state.
+        heading_gain: Demanded rate per heading error [1/s]; 0 for a speed.
+        period: Sample time [s].
+    """
+    count = len(names)
+    columns = []
+    for unit in np.eye(count + 3).tolist():
+        state = SimpleNamespace(**dict(zip(names, unit[:count], strict=True)))
+        output = step(state, *unit[count:])
+        columns.append([*(getattr(state, name) for name in names), output])
+    table = np.array(columns, dtype=float).T
+    a, b, c, d = table[:-1, :count], table[:-1, count:], table[-1, :count], table[-1, count:]
+
+    def response(z: Complex) -> tuple[Complex, Complex, Complex]:
+        states = np.linalg.solve(z[:, None, None] * np.eye(count) - a, b.astype(complex))
+        measured, applied, wanted = (c @ states + d).T
+        heading = period / (1.0 - 1.0 / z)
+        return np.zeros_like(z), heading_gain * heading * wanted - measured, applied / z
 
     return response

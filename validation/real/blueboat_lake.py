@@ -183,7 +183,7 @@ def print_leave_one_out(folds: Sequence[Fold]) -> None:
         rows.append([fold.run, *_free(fold.free_runs), *medians])
     goals = list(map("<= {}".format, GOALS.values()))
     rows.append(["goal", "", "", goals[0], "", "", goals[1]])
-    header = ["held out", "recalibrated [m]", "patched [m]", "ratio"]
+    header = ["held out", "retuned [m]", "corrected [m]", "ratio"]
     header += ["as recorded", "corrected", "ratio"]
     title = "each run held out once: position rms of free runs of 10 s; "
     print_table(title + "error per path of dead reckoning", header, rows)
