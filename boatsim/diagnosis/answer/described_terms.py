@@ -43,6 +43,7 @@ FACTORS = {
 SIDES = {"all": "", "port": " to port", "starboard": " to starboard"}
 SENSES = {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}
 POWERS = {2: " squared", 3: " cubed"}
+AT_FIRST = "at first"
 MINUS = "−"  # as numbers are written
 FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
@@ -189,7 +190,7 @@ def _statement(w: FittedTerm, vessel: Vessel) -> str:
     if term.of:
         text += f" times {factors_in_words(term)}"
     if when := _activity_condition(term):
-        text += f", {when}"
+        text += f" {when}" if when.startswith(AT_FIRST) else f", {when}"
     return text
 
 
@@ -233,7 +234,7 @@ def _activity_condition(term: SymbolicTerm) -> str:
     if term.acts == "rising":
         return f"rising from zero at {begin} s to its full value at {format_number(term.end)} s"
     if term.acts == "fading":
-        start = "at first" if term.begin == 0.0 else f"from {begin} s on"
+        start = AT_FIRST if term.begin == 0.0 else f"from {begin} s on"
         return f"{start}, falling to {FADED} % of that after {format_number(span)} s"
     if term.acts == "swinging":
         period = f"oscillating with a period of {format_number(span)} s"

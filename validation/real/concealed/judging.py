@@ -277,8 +277,13 @@ def size_text(sizes: Mapping[str, Size]) -> str:
 
 
 def _with_known(diagnosis: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> Fit:
-    """Return the recalibrated vessel with the effects that are known to be missing."""
-    base = diagnosis.ranking.recalibrated
+    """Return the refitted vessel with the effects that are known to be missing.
+
+    The vessel of the answer may have coefficients of the file, with which a comparison of evidence
+    would be one of the coefficients, too.
+    """
+    problem = diagnosis.problem
+    base = converge(problem, gauss_newton(problem, diagnosis.ranking.recalibrated, 4, 0.1))
     for name in sorted(set(known) - accepted_names(truth)):
         effect = candidate(diagnosis.problem, name)
         if effect is not None:
