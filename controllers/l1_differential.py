@@ -48,7 +48,7 @@ SURGE_SHARE = 1.2
 # Steady motions at which the loops are analysed, as shares of the full stick
 AHEAD, TURN = 0.5, 1.0
 SURGE_PULSE, YAW_PULSE = 0.03, 0.04  # the same for the pulses that excite them there
-SLOPE_STEP = 1e-4  # [N] relative to the full thrust, over which slopes are taken
+SLOPE_STEP = 1e-4  # of the full thrust, over which slopes are taken
 
 # X [N], N [N m]: values applied in the last period
 REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
@@ -169,7 +169,7 @@ class L1Differential(CompiledController, ModelBasedController):
             BadInput: A parameter is out of bounds.
         """
         self._pair: tuple[Records, Records] = np.zeros(1, PROPELLER), np.zeros(1, PROPELLER)
-        self._channels: tuple[str, ...] = type(self).commands
+        self._channels: tuple[str, ...] = ()  # not known yet
         super().__post_init__()
 
     def use_vessel_model(self, model: VesselModel) -> None:
@@ -215,7 +215,13 @@ class L1Differential(CompiledController, ModelBasedController):
         self.reset()
 
     def channels(self) -> tuple[str, ...]:
-        """Return the command channels of the propellers, port first."""
+        """Return the command channels of the propellers, port first.
+
+        Raises:
+            BadInput: The controller has no model of a vessel.
+        """
+        if not self._channels:
+            raise BadInput("l1_differential needs a model of its vessel; use_vessel_model gives it")
         return self._channels
 
     def settings_array(self, count: int = 1) -> Records:
@@ -250,8 +256,7 @@ class L1Differential(CompiledController, ModelBasedController):
         Raises:
             BadInput: The controller has no model of a vessel.
         """
-        if self.pole is UNSET or not self._pair[0]["side"][0]:
-            raise BadInput("l1_differential needs a model of its vessel; use_vessel_model gives it")
+        self.channels()  # that it has one
         speed, rate = self.rated_surge, self.rated_yaw
         surge = self._loop("u", "X", "mass", "surge_bandwidth", 0.0)
         yaw = self._loop("r", "N", "inertia", "yaw_bandwidth", self.heading_gain)

@@ -29,6 +29,10 @@ def print_margins(controller: str, vessel: str | None, loads: Sequence[str]) -> 
     if vessel is None:
         if loads:
             raise BadInput("--load needs --vessel")
+        if hasattr(made, "operating_points") and not hasattr(made, "feedback_loops"):
+            raise BadInput(
+                f"controller {controller!r} has margins on a vessel only; give it by --vessel NAME"
+            )
         print(f"{HEADING}\n{format_margins(stability_margins(made))}\n{HINT}")
         return
     boat = load_vessel(vessel, loads)

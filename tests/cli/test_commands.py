@@ -295,6 +295,7 @@ def test_margins_prints_the_l1_norm_of_the_yaw_channel() -> None:
     assert "nominal boat with ideal actuators" in result.stdout and "--vessel" in result.stdout
     assert "did you mean 'l1_joystick'" in boatsim("margins", "l1_joystik").stderr
     assert "--load needs --vessel" in boatsim("margins", "l1_joystick", "--load", "wide").stderr
+    assert "give it by --vessel NAME" in boatsim("margins", "l1_differential").stderr
 
 
 @pytest.mark.slow

@@ -135,8 +135,9 @@ def test_it_steers_fleets_and_other_drives_are_refused_in_one_line() -> None:
     assert runs_in_a_fleet(kind)
     with pytest.raises(BadInput, match="two fixed propellers .* joystick_boat has port, starboard"):
         introduce_vessel(kind(), load_vessel("joystick_boat"))
-    with pytest.raises(BadInput, match="needs a model of its vessel"):
-        kind().operating_points()
+    for use in (kind().operating_points, kind().channels):
+        with pytest.raises(BadInput, match="needs a model of its vessel"):
+            use()
 
 
 def test_a_margin_beyond_the_longest_simulated_delay_is_no_disagreement() -> None:
