@@ -8,6 +8,7 @@ from typing import Any
 
 BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0)
 SURE = 0.99  # probability from which a statement is called sure
+MANY = 4  # selected effects of a log that together describe an unknown cause
 WEAK = 0.7  # probability below which a name is improbable
 QUANTILE = 1.96  # two-sided 95 % of a normal distribution
 
@@ -114,6 +115,7 @@ def figures(records: Sequence[Record]) -> dict[str, str]:
         "known cause beside an unknown one, a wrong name": count(mixed, wrong),
         "names below 0.7 beside an unknown cause, right": share(_weak(records, unknown=True)),
         "names below 0.7 otherwise, right": share(_weak(records, unknown=False)),
+        "of four or more selected effects, right": share(_selected(records, MANY)),
         "logs whose recalibrated model is worse than the file": count(records, harmed),
     }
 
@@ -130,6 +132,17 @@ def _weak(records: Sequence[Record], unknown: bool) -> list[bool]:
         for effect in record["effects"]:
             if flagged(record) == unknown and effect["probability"] < WEAK:
                 found.append(not wrong({**record, "effects": [effect]}))
+    return found
+
+
+def _selected(records: Sequence[Record], fewest: int) -> list[bool]:
+    """Whether each selected effect of the logs with many of them is right, named or not."""
+    found = []
+    for record in records:
+        right, selected = right_names(record), record["signs"]["effects"]
+        for effect in selected if len(selected) >= fewest else ():
+            if not effect["refines"]:
+                found.append(bool(right & {effect["name"], *effect["tied_with"]}))
     return found
 
 
