@@ -29,10 +29,10 @@ class MissingForceCurve:
     Attributes:
         run: Name of the recording.
         t: Times (N,) [s].
-        force: Missing force of the recalibrated vessel (N,) [N, N m] by axis, such as "surge".
+        force: Force that the vessel as written lacks (N,) [N, N m] by axis, such as "surge".
         sd: Its standard deviation (N,) [N, N m] by axis.
         unit: "N" or "N m" by axis.
-        left: Missing force of the patched vessel (N,) [N, N m] by axis.
+        left: Force that the patched vessel still lacks (N,) [N, N m] by axis.
     """
 
     run: str
