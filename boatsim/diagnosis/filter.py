@@ -418,7 +418,21 @@ class MappedRecording:
     def _simulate_free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float
     ) -> list[tuple[int, Array]]:
-        begin = self.free_run_starts(values, on, levels, horizon)
+        return self.simulate_from(values, on, self.free_run_starts(values, on, levels, horizon))
+
+    def simulate_from(
+        self, values: Array, on: Array, begin: FreeRunStarts
+    ) -> list[tuple[int, Array]]:
+        """Simulate free runs from given states, with the recorded commands alone.
+
+        Args:
+            values: Parameter values of the vessel model for this recording.
+            on: (effects,) 1 for the effects that act, else 0.
+            begin: Where the runs begin and end, and the states they begin with.
+
+        Returns:
+            First row and channels (M, 2 NQ), as the recording would show them, of each free run.
+        """
         if not len(begin.starts):
             return []
         nq = self.program.module.NQ

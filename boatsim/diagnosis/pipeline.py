@@ -1,8 +1,8 @@
 """The pipeline of a diagnosis, from recordings to the answer.
 
-Its stages are load, check, fit, select, decide, describe, plan, adopt, validate, locate and answer.
-Each stage is a function from the results of earlier stages to a frozen result. It can be called
-alone.
+Its stages are load, check, fit, select, decide, describe, plan, adopt, simulate, validate, locate
+and answer. Each stage is a function from the results of earlier stages to a frozen result. It can
+be called alone.
 """
 
 import json
@@ -48,6 +48,7 @@ from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
+from boatsim.diagnosis.output_error.stage import fit_to_simulations
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
 from boatsim.diagnosis.recalibration import (
@@ -269,8 +270,13 @@ def _complete(selected: _Selected, begin: float, report: Report) -> Diagnosis:
     except NUMERICAL_ERRORS as error:
         failures.append(failure_statement("the search for the next experiment", error))
     ranking = _with_skipped(ranking, *failures)
-    report("free runs", EVALUATING)
     ranking = adopt_refitted_coefficients(question, decision, ranking)
+    report("fitting simulations", DESCRIBING[1])
+    try:
+        ranking = improve_simulations(question, decision, ranking)
+    except NUMERICAL_ERRORS as error:
+        ranking = _with_skipped(ranking, failure_statement("the fit to simulations", error))
+    report("free runs", EVALUATING)
     evaluation = validate_on_held_out(question, decision, ranking)
     location = locate_missing_force(decision, ranking, evaluation)
     stages = Stages(decision, ranking, evaluation, location, next_plan)
@@ -551,6 +557,17 @@ def adopt_refitted_coefficients(
     ):
         best = found.fit
     return replace(ranking, best=best, recalibrated=found.fit, recalibration=found)
+
+
+def improve_simulations(question: Question, decision: Decision, ranking: Ranking) -> Ranking:
+    """Fit the vessels to free runs, and add effects that improve these, where a force remains.
+
+    Args:
+        question: Candidates and held-out recordings.
+        decision: The problem with its correlation time.
+        ranking: Selected and described effects, with the adopted coefficients.
+    """
+    return fit_to_simulations(decision.problem, ranking, question.candidates, question.held_out)
 
 
 def validate_on_held_out(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:

@@ -35,12 +35,14 @@ class Recalibration:
         adopted: Whether the other coefficients are adopted.
         refitted: Rms errors of free runs over held-out recordings with the refitted coefficients,
             by family of signals.
+        by_free_runs: Whether they were fitted to free runs, not with the Kalman filter.
     """
 
     fit: Fit
     undetermined: tuple[str, ...]
     adopted: bool
     refitted: Mapping[str, float]
+    by_free_runs: bool = False
 
 
 def decide_recalibration(

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.answer.assumptions import assumptions_entry, excluded_candidates
 from boatsim.diagnosis.answer.described_terms import described_entries
 from boatsim.diagnosis.answer.effect_entries import (
+    added_entry,
     candidate_entries,
     effect_entry,
     effect_meanings,
@@ -87,6 +88,8 @@ def compose_answer(
         "effects": groups.effects,
         "refined": groups.refined,
         "also_possible": groups.also_possible,
+        "added": [added_entry(problem, ranking.best, name) for name in ranking.added],
+        "by_free_runs": ranking.by_free_runs,
         "unknown": _unknown(ranking, stages.location),
         "described": formulas,
         "candidates": candidate_entries(ranking),
@@ -125,7 +128,8 @@ def _effect_groups(decision: Decision, ranking: Ranking) -> EffectGroups:
         entries[identified.name] = effect_entry(problem, best, identified, decision)
     groups = classify_effects(problem, best, entries)
     for identified in ranking.doubtful:
-        groups.also_possible.append(possible_entry(problem, best, identified, decision))
+        refuted = identified.name in ranking.contradicted
+        groups.also_possible.append(possible_entry(problem, best, identified, decision, refuted))
     return groups
 
 
@@ -277,6 +281,7 @@ def _recalibration(found: Recalibration) -> RecalibrationEntry:
             refitted[family] = found.refitted[family]
     return {
         "adopted": found.adopted,
+        "by_free_runs": found.by_free_runs,
         "undetermined": list(found.undetermined),
         "refitted": refitted,
     }

@@ -9,6 +9,7 @@ from boatsim.diagnosis.answer.confirmation import effect_error_entry, reason_unc
 from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.answer.schema import (
     Acting,
+    AddedEntry,
     CandidateEntry,
     EffectEntry,
     ParameterEntry,
@@ -25,6 +26,8 @@ from boatsim.physics.base import ChannelEffect, Effect
 from boatsim.physics.groups import group_of, without_group
 from boatsim.physics.vessel import Vessel
 from boatsim.view.formatting import sentence_in_per_cent
+
+CONTRADICTED = "simulations with the recorded commands follow the recordings better without it"
 
 
 def effect_meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
@@ -82,8 +85,32 @@ def effect_entry(
     }
 
 
+def added_entry(problem: Problem, best: Fit, name: str) -> AddedEntry:
+    """Return the entry of an effect that only makes simulations better.
+
+    Args:
+        problem: The estimation problem.
+        best: The fit of the corrected vessel.
+        name: Name of the effect among the candidates.
+    """
+    effect = problem.candidates[name]
+    entry: AddedEntry = {
+        "name": name_without_prefixes(name),
+        "kind": type(effect).kind,
+        "words": _words(best, effect),
+        "parameters": _parameters(problem, best, effect),
+    }
+    if group := group_of(name):
+        entry["group"] = group
+    return entry
+
+
 def possible_entry(
-    problem: Problem, best: Fit, doubtful: IdentifiedEffect, decision: Decision
+    problem: Problem,
+    best: Fit,
+    doubtful: IdentifiedEffect,
+    decision: Decision,
+    contradicted: bool = False,
 ) -> PossibleEntry:
     """Return the entry of an effect that is probably a stand-in for another cause.
 
@@ -92,11 +119,14 @@ def possible_entry(
         best: The fit with all identified effects.
         doubtful: The effect with its evidence and probability.
         decision: Statistics of all selected effects.
+        contradicted: Whether free runs are clearly more probable without it.
     """
     effect = problem.candidates[doubtful.name]
     judged = decision.judgement_of_effect(doubtful.name)
     why = reason_for_doubt(judged, decision)
-    if judged.outcome == "unconfirmed":
+    if contradicted:
+        why = CONTRADICTED
+    elif judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)
     return {
         "name": name_without_prefixes(doubtful.name),

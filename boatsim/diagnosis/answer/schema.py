@@ -87,6 +87,19 @@ class PossibleEntry(TypedDict):
     confirmed: NotRequired[bool]
 
 
+class AddedEntry(TypedDict):
+    """An effect that the corrected vessel has for better simulations alone, in diagnosis.json.
+
+    Nothing is stated about whether it is a cause.
+    """
+
+    name: str
+    kind: str  # "physics" or "measurement"
+    words: str
+    parameters: dict[str, ParameterEntry]
+    group: NotRequired[str]  # of recordings, in which alone it acts
+
+
 class FactorEntry(TypedDict):
     """Size of an effect on a part of the data relative to its fitted size, in diagnosis.json."""
 
@@ -304,6 +317,7 @@ class RecalibrationEntry(TypedDict):
     """Which refitted coefficients of the vessel model were adopted, in diagnosis.json."""
 
     adopted: bool  # else all coefficients have the value of the vessel file
+    by_free_runs: NotRequired[bool]  # they minimise errors of free runs, not of the Kalman filter
     undetermined: list[str]  # "effect.number" of those that keep that value in any case
     refitted: dict[Family, float]  # rms errors on held-out recordings with refitted coefficients
 
@@ -379,6 +393,10 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     refined: NotRequired[list[RefinedEntry]]  # empty for a vessel file without [estimated]
     also_possible: NotRequired[list[PossibleEntry]]
+    # effects that were added to the corrected vessel because simulations get better by them
+    added: NotRequired[list[AddedEntry]]
+    # whether the corrected vessel minimises errors of free runs, not of the Kalman filter
+    by_free_runs: NotRequired[bool]
     signs: NotRequired[SignsEntry]
     unknown: UnknownEntry
     described: list[DescribedEntry]

@@ -110,7 +110,19 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         if main := main_refinement(answer):
             statement += f": {main}" if one else f", above all {main}"
         statements.append(statement)
+    statements += _added(answer)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
+
+
+def _added(answer: Answer) -> list[str]:
+    """Return the statement on effects that only make simulations better."""
+    names = [name_in_words(entry["name"]) for entry in answer.get("added", [])]
+    if not names:
+        return []
+    reason = "simulations get better by them, but they are not shown to be causes"
+    if len(names) == 1:
+        reason = "simulations get better by it, but it is not shown to be a cause"
+    return [f"for predictions, the corrected vessel also has {join_words(names)}: {reason}"]
 
 
 def reason_none_tested(answer: Answer) -> str:
@@ -179,6 +191,8 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
             errors = count_in_words(len(measured), "measurement error")
         if statements:
             statements.append(f"in addition, the recordings contain {errors}: {_clauses(measured)}")
+        elif answer["unknown"]["flag"]:
+            statements.append(f"the recordings contain {errors}: {_clauses(measured)}")
         else:
             statements.append(
                 f"no missing physics was found, but the recordings contain {errors}: "

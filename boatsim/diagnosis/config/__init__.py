@@ -2,7 +2,7 @@
 
 A `DiagnosisConfig` holds frozen groups of settings, named after the stages of
 `boatsim.diagnosis.pipeline`: load, check (`checks`), fit, select, decide, describe, plan, adopt,
-validate and answer. The stage adopt has no group; it uses `fit.undetermined_sd` and
+simulate, validate and answer. The stage adopt has no group; it uses `fit.undetermined_sd` and
 `validate.harmful`. The groups `filter` and `locate` belong to methods that several stages use.
 
 Each setting has a default, a unit and the reason for its value. Users change settings by their
@@ -29,6 +29,7 @@ from boatsim.diagnosis.config.load import LoadConfig
 from boatsim.diagnosis.config.locate import LocateConfig
 from boatsim.diagnosis.config.plan import PlanConfig
 from boatsim.diagnosis.config.select import SelectConfig
+from boatsim.diagnosis.config.simulate import SimulateConfig
 from boatsim.diagnosis.config.validate import ValidateConfig
 
 __all__ = [
@@ -46,6 +47,7 @@ __all__ = [
     "Plain",
     "PlanConfig",
     "SelectConfig",
+    "SimulateConfig",
     "ValidateConfig",
     "from_settings",
     "settings_by_name",

@@ -17,6 +17,7 @@ from boatsim.diagnosis.config.locate import LocateConfig
 from boatsim.diagnosis.config.plan import PlanConfig
 from boatsim.diagnosis.config.select import SelectConfig
 from boatsim.diagnosis.config.setting import Number
+from boatsim.diagnosis.config.simulate import SimulateConfig
 from boatsim.diagnosis.config.validate import ValidateConfig
 from boatsim.errors import BadInput, unknown_name_message
 
@@ -38,6 +39,7 @@ class DiagnosisConfig:
     decide: DecideConfig = DecideConfig()
     describe: DescribeConfig = DescribeConfig()
     plan: PlanConfig = PlanConfig()
+    simulate: SimulateConfig = SimulateConfig()
     validate: ValidateConfig = ValidateConfig()
     answer: AnswerConfig = AnswerConfig()
     filter: FilterConfig = FilterConfig()

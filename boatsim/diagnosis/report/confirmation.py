@@ -70,13 +70,35 @@ def recalibration_sentences(f: Findings) -> list[str]:
             "not determine them well enough: "
             f"{join_words(_grouped_names(found['undetermined']))}."
         )
+    if found.get("by_free_runs") or f.answer.get("by_free_runs"):
+        sentences.append(_fitted_to_free_runs(f))
     possible = f.answer.get("also_possible", [])
-    if dropped := [name_in_words(e["name"]) for e in possible if e.get("in_patch") is False]:
+    dropped = [name_in_words(e["name"]) for e in possible if e.get("in_patch") is False]
+    if dropped and f.answer.get("by_free_runs"):
+        sentences.append(
+            f"It does not have {join_words(dropped)}: simulations are at least as good without "
+            f"{'it' if len(dropped) == 1 else 'them'}."
+        )
+    elif dropped:
         sentences.append(
             "The corrected vessel is the retuned one: it would predict the held-out recordings "
             f"worse with what is also possible ({join_words(dropped)})."
         )
     return sentences
+
+
+def _fitted_to_free_runs(f: Findings) -> str:
+    """Return the sentence on the vessels whose numbers were fitted to simulations."""
+    vessels = []
+    if f.answer.get("recalibration", {}).get("by_free_runs"):
+        vessels.append("retuned")
+    if f.answer.get("by_free_runs"):
+        vessels.append("corrected")
+    return (
+        f"Because the cause of a force is unknown, the numbers of the {join_words(vessels)} vessel "
+        "were fitted to simulations of the fitted recordings with the recorded commands alone; "
+        "held-out recordings are predicted better so."
+    )
 
 
 def _not_adopted(f: Findings, refitted: Mapping[Family, float]) -> list[str]:

@@ -107,6 +107,26 @@ def possible_effects_section(f: Findings) -> Iterator[Block]:
             yield without_empty_columns(Table(caption, header, rows, prose=(2,)))
 
 
+def added_effects_section(f: Findings) -> Iterator[Block]:
+    """Yield the effects that the corrected vessel has for better simulations alone.
+
+    Args:
+        f: Findings of a diagnosis.
+    """
+    entries = f.answer.get("added", [])
+    if entries:
+        yield Text(
+            "The corrected vessel has these effects because simulations of fitted and held-out "
+            "recordings get better by them. They may stand in for other causes."
+        )
+    for entry in entries:
+        yield Heading(capitalize(effect_description(entry["words"])), entry["name"])
+        header = ["parameter", "value ± deviation", "meaning"]
+        rows = _values(f, entry["name"], entry["parameters"])
+        caption = "Values as patched.toml contains them"
+        yield without_empty_columns(Table(caption, header, rows, prose=(2,)))
+
+
 def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
     kind = "measurement error" if e["kind"] == "measurement" else "physics"
     likely = format_cause_probability(e["probability"])

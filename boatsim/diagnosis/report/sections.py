@@ -16,6 +16,7 @@ from boatsim.diagnosis.report.candidate_sections import (
     upper_limits_section,
 )
 from boatsim.diagnosis.report.effect_sections import (
+    added_effects_section,
     identified_effect_sections,
     possible_effects_section,
     refined_numbers_section,
@@ -59,6 +60,7 @@ def report_sections(f: Findings) -> list[Section]:
         Section("what", "Missing physics", list(_missing_physics(f))),
         Section("refined", "Numbers refined", list(refined_numbers_section(f))),
         Section("possible", "Also possible", list(possible_effects_section(f))),
+        Section("added", "Added for predictions", list(added_effects_section(f))),
         Section("taken", "Candidates and assumptions", list(_assumptions(f))),
         Section("where", "Where and when a force is missing", list(missing_force_section(f))),
         Section("ranking", "Ranking of the candidate effects", list(candidate_ranking_section(f))),

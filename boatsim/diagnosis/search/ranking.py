@@ -83,11 +83,17 @@ class Ranking:
     held_out_remains: bool = False  # whether held-out recordings clearly require another force
     # which refitted coefficients `recalibrated` has; None before that is decided
     recalibration: Recalibration | None = None
+    # whether `best` was fitted to free runs, because a force remains unexplained
+    by_free_runs: bool = False
+    # effects of `best` that only make its free runs better: no statement about causes
+    added: tuple[str, ...] = ()
+    # effects among `doubtful` without which free runs are clearly more probable
+    contradicted: tuple[str, ...] = ()
 
     @property
     def adds_effects(self) -> bool:
         """Whether the selected model has an effect or a formula that the vessel file lacks."""
-        return bool(self.named) or bool(self.doubtful) or bool(self.described_terms)
+        return bool(self.named or self.doubtful or self.described_terms or self.added)
 
     @property
     def described_terms(self) -> Mapping[str, SymbolicTerm]:

@@ -64,13 +64,30 @@ class Linearisation:
         Args:
             white: (rows,) whitened errors with the effect at a starting point.
         """
-        change = white - self.whitened_errors
-        with np.errstate(over="ignore", invalid="ignore"):  # the simulated boat may diverge
-            along = self.columns.T @ change
-            length = float(change @ change - along @ (self.inverse @ along))
-            own = self.inverse @ (self.columns.T @ self.whitened_errors)
-            slope = float(self.whitened_errors @ change - along @ own)
-        return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
+        return gain_along(self.columns, self.inverse, self.whitened_errors, white)
+
+
+def gain_along(columns: Array, inverse: Array, errors: Array, changed: Array) -> float:
+    """Predict how much the log posterior gains by the best multiple of a change of the errors.
+
+    The errors are linear in the parameters of the model, which are free, too.
+
+    Args:
+        columns: (rows, F) derivatives of the errors by the parameters, in prior sds.
+        inverse: (F, F) inverse of the information on these.
+        errors: (rows,) errors of the model, in sds.
+        changed: (rows,) errors with another effect at a starting point.
+
+    Returns:
+        The gain [nats]; minus infinity if the simulated boat diverges.
+    """
+    change = changed - errors
+    with np.errstate(over="ignore", invalid="ignore"):  # the simulated boat may diverge
+        along = columns.T @ change
+        length = float(change @ change - along @ (inverse @ along))
+        own = inverse @ (columns.T @ errors)
+        slope = float(errors @ change - along @ own)
+    return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
 
 
 def linearise(problem: Problem, base: Fit) -> Linearisation:

@@ -647,7 +647,7 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
         (
             [LATE],
             [EVENT],
-            "No missing physics was found, but the recordings contain a measurement error: "
+            "The recordings contain a measurement error: "
             f"{CLOCK}. In addition, one further force remains: a push at 3 s of run_1.",
         ),
         (

@@ -1,0 +1,47 @@
+"""Settings of the output-error method: parameters and effects that free runs require."""
+
+from dataclasses import dataclass
+
+from boatsim.diagnosis.config.setting import setting
+
+
+@dataclass(frozen=True)
+class SimulateConfig:
+    """Settings of the fit to free runs, where a force remains that no effect explains."""
+
+    steps: int = setting(
+        8,
+        "count",
+        "Most Gauss-Newton steps of a fit to free runs; fits of real recordings ended after three "
+        "to eight.",
+        low=1,
+    )
+    step_gain: float = setting(
+        0.1, "nats", "A smaller gain ends a fit; parameters then move by a fraction of their sd."
+    )
+    better: float = setting(
+        1.05,
+        "1",
+        "Factor by which the rms errors on held-out recordings must fall, geometric mean over the "
+        "signals, for a vessel fitted to free runs to replace that of the Kalman filter.",
+        low=1.0,
+    )
+    effects: int = setting(
+        4,
+        "count",
+        "Most effects that are added because simulations get better by them. Each costs about as "
+        "much as a fit of the vessel.",
+    )
+    effect_gain: float = setting(
+        2.0,
+        "nats",
+        "Evidence of the free runs for an added effect. Odds of 7 suffice, because it is only used "
+        "for predictions, and held-out recordings decide, too.",
+    )
+    followed: int = setting(
+        8, "count", "Candidates of the largest predicted gain that get a rough fit.", low=1
+    )
+    followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
+    fitted: int = setting(
+        3, "count", "Candidates of the largest gain of a rough fit that are fitted in full.", low=1
+    )

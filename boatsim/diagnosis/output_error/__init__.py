@@ -1,0 +1,1 @@
+"""Output-error method: parameters and effects that make simulations follow the recordings."""

@@ -1,0 +1,191 @@
+"""Search for the effects with which free runs follow the recordings best.
+
+Where a force remains that no candidate explains, the effects of the Kalman filter's search are
+often stand-ins: they take up a part of that force from sample to sample, and make a simulation
+worse. This search drops those, and adds candidates that make simulations better. It describes the
+recordings; it does not tell causes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.diagnosis.candidates import name_without_prefixes
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.fit import ParameterSpace, remove_effect
+from boatsim.diagnosis.free_runs import free_run_horizon, free_runs
+from boatsim.diagnosis.output_error.errors import output_errors
+from boatsim.diagnosis.output_error.fit import OutputErrorFit, add_parameters, fit_to_free_runs
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.search.screening import gain_along, starting_fits
+
+BEFORE, AFTER = "before", "after"
+
+
+class OutputErrorSearch:
+    """Search for the vessel whose free runs follow the recordings best.
+
+    Evidence of free runs over the fitted recordings selects effects; held-out recordings may
+    refuse each of them.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        start: Fit,
+        held_out: Sequence[MappedRecording],
+        fixed_effects: Sequence[str] = (),
+    ) -> None:
+        """Fit the parameters of a vessel to free runs.
+
+        Args:
+            problem: The estimation problem: recordings, vessel model, candidate effects, priors.
+            start: The vessel with the parameters that the Kalman filter found.
+            held_out: Held-out recordings, at least one.
+            fixed_effects: Effects that stay, with their parameters.
+        """
+        self.problem, self.held_out, self.fixed_effects = problem, held_out, fixed_effects
+        self.config = problem.config.simulate
+        self.horizon = free_run_horizon(problem, held_out)
+        self._accept(self._fitted(start))
+
+    @property
+    def model(self) -> Fit:
+        """The best vessel so far."""
+        return self.best.model
+
+    def drop_effects(self) -> None:
+        """Drop each effect without which free runs are at least as probable.
+
+        Those over held-out recordings must not get clearly worse either.
+        """
+        for name in reversed(self.model.effects):
+            if name in self.fixed_effects:
+                continue
+            fewer = self._fitted(remove_effect(self.problem, self.model, name))
+            worse = self.held_out_ratio(fewer.model) > self.problem.config.validate.worse
+            if fewer.evidence >= self.best.evidence and not worse:
+                self._accept(fewer)
+
+    def drop_if_clearly_better(self, name: str) -> bool:
+        """Drop an effect whose parameters are fixed, if free runs are clearly better without it.
+
+        Args:
+            name: Name of the effect.
+
+        Returns:
+            Whether it was dropped.
+        """
+        fewer = self._fitted(remove_effect(self.problem, self.model, name))
+        gain = fewer.evidence - self.best.evidence
+        if gain < self.config.effect_gain or self.held_out_ratio(fewer.model) > 1.0:
+            return False
+        self._accept(fewer)
+        return True
+
+    def add_effects(self, candidates: Sequence[str]) -> None:
+        """Add effects one by one, each the one that the free runs make most probable.
+
+        Args:
+            candidates: Names of the candidates.
+        """
+        for _ in range(self.config.effects):
+            for further in self._most_probable(candidates):
+                gain = further.evidence - self.best.evidence
+                if gain >= self.config.effect_gain and self._helps(further.model):
+                    self._accept(further)
+                    break
+            else:
+                return
+
+    def held_out_ratio(self, other: Fit) -> float:
+        """Return the ratio of rms errors on held-out recordings, geometric mean over the signals.
+
+        Args:
+            other: Vessel that is compared with the best one so far.
+        """
+        return error_ratio(self.problem, other, self.model, self.held_out, self.horizon)
+
+    def _helps(self, other: Fit) -> bool:
+        """Whether simulations of held-out recordings get better, and those of no group worse."""
+        return self.held_out_ratio(other) < 1.0 and not generalization.harmed_groups(
+            self.problem, self.model, other, self.held_out, self.horizon
+        )
+
+    def _fitted(self, start: Fit) -> OutputErrorFit:
+        """Fit a vessel, in units of the errors of the best one so far, at first of its own."""
+        if not hasattr(self, "errors"):
+            self.errors = output_errors(self.problem, start, self.problem.recordings, self.horizon)
+        return fit_to_free_runs(self.errors, start, self.fixed_effects)
+
+    def _accept(self, found: OutputErrorFit) -> None:
+        """Make a fit the best one, and its errors the units of the next ones."""
+        recordings = self.problem.recordings
+        self.errors = output_errors(self.problem, found.model, recordings, self.horizon)
+        self.best = fit_to_free_runs(self.errors, found.model, self.fixed_effects)
+
+    def _most_probable(self, candidates: Sequence[str]) -> list[OutputErrorFit]:
+        """The fits with one more effect, the most probable one first."""
+        rough = []
+        for start in self._promising(candidates)[: self.config.followed]:
+            steps = self.config.followed_steps
+            rough.append(add_parameters(self.errors, self.best, start, steps))
+        rough.sort(key=lambda one: -one.score)
+        full = [
+            fit_to_free_runs(self.errors, one.model, self.fixed_effects)
+            for one in rough[: self.config.fitted]
+        ]
+        return sorted(full, key=lambda one: -one.evidence)
+
+    def _promising(self, candidates: Sequence[str]) -> list[Fit]:
+        """Starts with one more effect, at the best of its starting points, by predicted gain."""
+        present = set(map(name_without_prefixes, self.model.effects))
+        J = self.best.J
+        inverse = np.asarray(np.linalg.inv(np.eye(J.shape[1]) + J.T @ J), dtype=np.float64)
+        found = []
+        for name in candidates:
+            effect = self.problem.candidates[name]
+            kind = type(effect)
+            if name_without_prefixes(name) in present or kind.random or kind.described:
+                continue
+            starts = None if kind.kind == "measurement" else self.best.starts
+            best, most = None, 0.0
+            for start in starting_fits(self.problem, self.model, effect):
+                start = replace(start, theta=ParameterSpace(start.free).clip(start.theta))
+                changed = self.errors.residuals(start, starts)
+                gain = gain_along(J, inverse, self.best.residuals, changed)
+                if gain > most:
+                    best, most = start, gain
+            if best is not None:
+                found.append((most, best))
+        found.sort(key=lambda one: -one[0])
+        return [start for _, start in found]
+
+
+def error_ratio(
+    problem: Problem,
+    found: Fit,
+    reference: Fit,
+    held_out: Sequence[MappedRecording],
+    horizon: float,
+) -> float:
+    """Return the ratio of the rms errors of two vessels' free runs over held-out recordings.
+
+    It is the geometric mean over the signals; infinite where a simulation diverges.
+
+    Args:
+        problem: The estimation problem.
+        found: The vessel that is judged.
+        reference: The vessel that it is compared with.
+        held_out: Held-out recordings, at least one.
+        horizon: Length of each free run [s].
+    """
+    runs = free_runs(problem, {BEFORE: reference, AFTER: found}, held_out, horizon)
+    before = generalization.mean_square_errors(runs, BEFORE)
+    if not before:
+        return 1.0
+    after = generalization.mean_square_errors(runs, AFTER)
+    ratio = float(np.sqrt(generalization.error_ratio(after, before)))
+    return ratio if np.isfinite(ratio) else np.inf

@@ -1,0 +1,200 @@
+"""The simulate stage: where a force remains unexplained, free runs decide what predicts best."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.fit import remove_effect
+from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
+from boatsim.diagnosis.open_set.refinement import refines_estimated_number
+from boatsim.diagnosis.output_error.errors import MODEL
+from boatsim.diagnosis.output_error.search import OutputErrorSearch, error_ratio
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recalibration import Recalibration
+from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.search.ranking import Ranking
+
+
+@dataclass(frozen=True)
+class _Comparison:
+    """Compares vessels by their free runs over held-out recordings."""
+
+    problem: Problem
+    held_out: Sequence[MappedRecording]
+
+    def is_clearly_better(self, found: Fit, reference: Fit) -> bool:
+        """Whether a vessel predicts clearly better on the whole, and no group much worse."""
+        horizon = free_run_horizon(self.problem, self.held_out)
+        ratio = error_ratio(self.problem, found, reference, self.held_out, horizon)
+        if ratio * self.problem.config.simulate.better > 1.0:
+            return False
+        return not generalization.harmed_groups(
+            self.problem, reference, found, self.held_out, horizon
+        )
+
+
+def fit_to_simulations(
+    problem: Problem,
+    ranking: Ranking,
+    candidates: Sequence[str],
+    held_out: Sequence[MappedRecording],
+) -> Ranking:
+    """Fit the retuned and the corrected vessel to free runs, where a force remains unexplained.
+
+    A Kalman filter ascribes such a force to a disturbance, so that it finds coefficients and
+    effects which explain single steps, but may simulate badly. Parameters of effects that are
+    stated as causes keep their values; an effect that simulations contradict is only possible.
+    Candidates are added that make simulations better, as a description. Each vessel is replaced
+    only if it predicts held-out recordings clearly better.
+
+    Args:
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Selected and described effects, with the adopted coefficients.
+        candidates: Names of the candidates that may be added.
+        held_out: Held-out recordings, at least one.
+
+    Returns:
+        The ranking with the vessels that predict best; the same one if nothing is unexplained.
+    """
+    if not ranking.has_unexplained_force_or_cause or ranking.divergences:
+        return ranking
+    comparison = _Comparison(problem, held_out)
+    retuned = OutputErrorSearch(problem, ranking.recalibrated, held_out).model
+    better = comparison.is_clearly_better(retuned, ranking.recalibrated)
+    stated = [
+        one.name
+        for one in ranking.named
+        if not refines_estimated_number(problem, ranking.best, one.name)
+    ]
+    contradicted = contradicted_effects(problem, ranking.best, stated, held_out)
+    kept = [name for name in stated if name not in contradicted]
+    corrected = _best_corrected_vessel(problem, ranking, retuned, kept, contradicted, held_out)
+    corrected.add_effects(candidates)
+    found = ranking
+    if better:
+        found = _with_retuned(problem, ranking, retuned, held_out)
+    if comparison.is_clearly_better(corrected.model, found.best):
+        found = _with_corrected(found, corrected.model, contradicted)
+    return found
+
+
+def contradicted_effects(
+    problem: Problem, best: Fit, stated: Sequence[str], held_out: Sequence[MappedRecording]
+) -> tuple[str, ...]:
+    """Return those effects without which free runs are clearly more probable.
+
+    Held-out recordings have to agree. An effect on which free runs do not depend, such as an error
+    of a rate sensor, is never contradicted.
+
+    Args:
+        problem: The estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        stated: Names of effects that are stated as causes.
+        held_out: Held-out recordings, at least one.
+    """
+    found = list[str]()
+    if not stated:
+        return ()
+    search = OutputErrorSearch(problem, best, held_out, stated)
+    for name in stated:
+        if search.drop_if_clearly_better(name):
+            found.append(name)
+    return tuple(found)
+
+
+def _best_corrected_vessel(
+    problem: Problem,
+    ranking: Ranking,
+    retuned: Fit,
+    kept: Sequence[str],
+    contradicted: Sequence[str],
+    held_out: Sequence[MappedRecording],
+) -> OutputErrorSearch:
+    """The better start for further effects: all that the filter selected, or what is stated."""
+    start = ranking.best
+    for name in contradicted:
+        start = remove_effect(problem, start, name)
+    whole = OutputErrorSearch(problem, start, held_out, kept)
+    whole.drop_effects()
+    bare = retuned
+    if kept:
+        bare = ranking.best
+        for name in ranking.best.effects:
+            if name not in kept:
+                bare = remove_effect(problem, bare, name)
+    simple = OutputErrorSearch(problem, bare, held_out, kept)
+    return simple if whole.held_out_ratio(simple.model) <= 1.0 else whole
+
+
+def _with_retuned(
+    problem: Problem, ranking: Ranking, retuned: Fit, held_out: Sequence[MappedRecording]
+) -> Ranking:
+    """The ranking with the retuned vessel that free runs over the fitted recordings gave."""
+    horizon = free_run_horizon(problem, held_out)
+    errors = rms_errors(free_runs(problem, {MODEL: retuned}, held_out, horizon))
+    recalibration = Recalibration(
+        retuned, (), True, {family: rms[MODEL] for family, rms in errors.items()}, by_free_runs=True
+    )
+    best = retuned if not ranking.best.effects else ranking.best
+    return replace(ranking, best=best, recalibrated=retuned, recalibration=recalibration)
+
+
+def _with_corrected(ranking: Ranking, found: Fit, contradicted: Sequence[str]) -> Ranking:
+    """The ranking with the corrected vessel that free runs gave."""
+    before = {*(one.name for one in (*ranking.named, *ranking.doubtful)), *ranking.described_terms}
+    named, doubtful = list(ranking.named), list(ranking.doubtful)
+    for one in ranking.named:
+        if one.name not in found.effects:
+            named.remove(one)
+            if one.name in contradicted:
+                doubtful.append(one)
+    return replace(
+        ranking,
+        best=_with_known_covariance(found, ranking.best, [one.name for one in named]),
+        named=tuple(named),
+        doubtful=tuple(doubtful),
+        contradicted=tuple(contradicted),
+        added=tuple(name for name in found.effects if name not in before),
+        description=_moved_description(ranking, found),
+        by_free_runs=True,
+    )
+
+
+def _with_known_covariance(found: Fit, before: Fit, stated: Sequence[str]) -> Fit:
+    """A fit in which effects that kept their parameters have the covariance of an earlier fit."""
+    old = {(f.effect, f.name): i for i, f in enumerate(before.free) if f.effect in stated}
+    own, theirs = list[int](), list[int]()
+    for i, f in enumerate(found.free):
+        j = old.get((f.effect, f.name))
+        if j is not None and not f.relative and found.theta[i] == before.theta[j]:
+            own.append(i)
+            theirs.append(j)
+    covariance = found.covariance.copy()
+    covariance[own, :] = covariance[:, own] = 0.0
+    covariance[np.ix_(own, own)] = before.covariance[np.ix_(theirs, theirs)]
+    return replace(found, covariance=covariance)
+
+
+def _moved_description(ranking: Ranking, found: Fit) -> SymbolicDescription | None:
+    """The formula with the coefficients of a fit; terms that it lacks do not hold."""
+    if ranking.description is None:
+        return None
+    terms = list[FittedTerm]()
+    for one in ranking.description.terms:
+        if one.carries and one.term.name in found.effects:
+            value, sd = found.value(one.term.name, "coefficient")
+            terms.append(_moved_term(one, value, sd))
+        else:
+            terms.append(replace(one, carries=False))
+    return replace(ranking.description, terms=tuple(terms))
+
+
+def _moved_term(one: FittedTerm, value: float, sd: float) -> FittedTerm:
+    """A term with another coefficient; its curve is proportional to that."""
+    curve, before = one.curve, one.term.coefficient
+    if curve is not None and before:
+        curve = replace(curve, law=curve.law * value / before, sd=abs(sd / before * curve.law))
+    return replace(one, term=replace(one.term, coefficient=value), sd=sd, curve=curve)

@@ -1,0 +1,150 @@
+"""Laws of the output-error method, on boats of an independent integrator."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pushed_boat import DAMPING, Missing, laid, push, sail
+
+from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
+from boatsim.diagnosis.output_error.errors import output_errors
+from boatsim.diagnosis.output_error.fit import fit_to_free_runs
+from boatsim.diagnosis.output_error.search import OutputErrorSearch
+from boatsim.diagnosis.output_error.stage import contradicted_effects, fit_to_simulations
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import select_and_rank_candidates
+from boatsim.diagnosis.search.screening import add_effect
+from boatsim.physics.base import Array
+
+WEAK_ASTERN = 0.4  # share of the thrust astern that is missing
+ODD = 0.06  # m/s at which the damping is as large as the forces of unknown cause
+
+
+def nothing(t: float, y: Array, command: Array) -> Array:
+    return np.zeros(3)
+
+
+def draggy(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(-0.05 * DAMPING * y[3:6])
+
+
+def odd(t: float, y: Array, command: Array) -> Array:
+    """Forces that no candidate has: they change over the place."""
+    swing = np.array([np.sin(2.0 * y[0]), np.cos(2.0 * y[1]), 0.3 * np.sin(2.0 * y[0])])
+    return np.asarray(ODD * DAMPING * swing)
+
+
+def odd_and_weak_astern(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(
+        -WEAK_ASTERN * push(np.minimum(command[:2], 0.0), command[2:]) + odd(t, y, command)
+    )
+
+
+def held_out_of(problem: Problem, missing: Missing) -> list[MappedRecording]:
+    recording = sail("held out", 9, missing)[0]
+    return [map_recording(recording, problem.program)]
+
+
+def error(problem: Problem, found: Fit, recordings: list[MappedRecording]) -> float:
+    """Geometric mean of the rms errors of position and heading of free runs."""
+    horizon = free_run_horizon(problem, recordings)
+    rms = rms_errors(free_runs(problem, {"it": found}, recordings, horizon))
+    return float(np.exp(np.mean([np.log(one["it"]) for one in rms.values()])))
+
+
+def test_the_fit_minimises_the_errors_of_free_runs_and_its_derivatives_are_right() -> None:
+    problem, retuned = laid(sail("fitted", 1, odd)[0])
+    errors = output_errors(problem, retuned, problem.recordings, problem.horizon)
+    found = fit_to_free_runs(errors, retuned)
+    before = errors.score(retuned, errors.residuals(retuned))
+    assert found.score >= before
+    assert error(problem, found.model, list(problem.recordings)) < error(
+        problem, retuned, list(problem.recordings)
+    )
+    # a step to any side of the minimum is worse, each with the model's own starting states
+    sd = np.sqrt(np.diag(found.model.covariance))
+    for j, step in enumerate(sd):
+        for sign in (-1.0, 1.0):
+            theta = found.model.theta.copy()
+            theta[j] += sign * step
+            other = replace(found.model, theta=theta)
+            assert errors.score(other, errors.residuals(other)) < found.score + 0.1
+
+
+def test_right_coefficients_are_found_within_their_deviation() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, draggy)[0] for i in (1, 2, 3)))
+    errors = output_errors(problem, retuned, problem.recordings, problem.horizon)
+    found = fit_to_free_runs(errors, retuned).model
+    for f, x, sd in zip(found.free, found.theta, np.sqrt(np.diag(found.covariance)), strict=True):
+        true = 1.05 if "damping" in f.effect else 1.0
+        assert abs(x - true) < 3.0 * sd
+
+
+def test_parameters_of_fixed_effects_keep_their_values() -> None:
+    problem, retuned = laid(sail("fitted", 1, odd_and_weak_astern)[0])
+    start = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 0.83})
+    errors = output_errors(problem, start, problem.recordings, problem.horizon)
+    fixed = fit_to_free_runs(errors, start, ["weak_reverse"]).model
+    free = fit_to_free_runs(errors, start).model
+    assert fixed.value("weak_reverse", "astern_factor")[0] == 0.83
+    assert free.value("weak_reverse", "astern_factor")[0] == pytest.approx(
+        1.0 - WEAK_ASTERN, abs=0.15
+    )
+
+
+def test_an_effect_that_acts_is_added_beside_forces_of_unknown_cause() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    search = OutputErrorSearch(problem, retuned, held_out)
+    before = error(problem, search.model, held_out)
+    search.add_effects(["thrust_imbalance", "weak_reverse", "prop_walk"])
+    assert "weak_reverse" in search.model.effects
+    assert search.model.value("weak_reverse", "astern_factor")[0] == pytest.approx(
+        1.0 - WEAK_ASTERN, abs=0.15
+    )
+    assert error(problem, search.model, held_out) < before
+
+
+def test_an_effect_that_does_not_act_is_dropped_and_none_is_added() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, nothing)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, nothing)
+    start = converge(problem, add_effect(problem, retuned, "prop_walk", {}))
+    search = OutputErrorSearch(problem, start, held_out)
+    search.drop_effects()
+    assert not search.model.effects
+    search.add_effects(["prop_walk", "weak_reverse", "thrust_imbalance"])
+    assert not search.model.effects
+
+
+def test_a_stated_effect_is_contradicted_only_if_simulations_are_clearly_better_without() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd)
+    wrong = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 0.4})
+    assert contradicted_effects(problem, wrong, ["weak_reverse"], held_out) == ("weak_reverse",)
+    # simulations with thrust ahead alone do not depend on it
+    problem, retuned = laid(sail("ahead", 1, odd, straight=True)[0])
+    held_out = [map_recording(sail("held out", 2, odd, straight=True)[0], problem.program)]
+    unseen = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 0.4})
+    assert contradicted_effects(problem, unseen, ["weak_reverse"], held_out) == ()
+
+
+def test_nothing_is_changed_where_nothing_is_unexplained() -> None:
+    problem, _ = laid(*(sail(f"fitted {i}", i, nothing)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, nothing)
+    ranking = select_and_rank_candidates(problem, ("weak_reverse",), held_out)
+    assert not ranking.has_unexplained_force_or_cause
+    assert fit_to_simulations(problem, ranking, ("weak_reverse",), held_out) is ranking
+
+
+def test_where_a_force_is_unexplained_the_corrected_vessel_predicts_no_worse() -> None:
+    problem, _ = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    names = ("thrust_imbalance", "prop_walk")
+    ranking = select_and_rank_candidates(problem, names, held_out)
+    assert ranking.has_unexplained_force_or_cause
+    found = fit_to_simulations(problem, ranking, (*names, "weak_reverse"), held_out)
+    assert found.by_free_runs and "weak_reverse" in found.added
+    assert error(problem, found.best, held_out) * 1.05 < error(problem, ranking.best, held_out)
+    assert set(found.best.effects) <= {*names, "weak_reverse"}
