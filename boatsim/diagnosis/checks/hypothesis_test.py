@@ -2,8 +2,8 @@
 
 Nothing is compared if the vessel explains the log: if the unexplained force is a small share of
 the force of the drives, and the bow points along the course. A reinterpretation is accepted only if
-the log becomes far more likely than as recorded and than under any other reinterpretation. The
-coefficients are refitted in all cases.
+the log becomes far more likely than as recorded and than under any other reinterpretation, and if
+simulations with the recorded commands follow it better. The coefficients are refitted in all cases.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,8 +32,11 @@ from boatsim.diagnosis.checks.reinterpretations import (
 from boatsim.diagnosis.checks.steering_sense import commands_with_corrected_sign
 from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
+from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.output_error.errors import MODEL, output_errors
+from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.priors import downsampling_rate
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
@@ -94,6 +97,34 @@ class Comparison:
         except (BadInput, np.linalg.LinAlgError, FloatingPointError) as error:
             return Score(-np.inf, np.inf, error)
         return Score(recalibrated.evidence, unexplained_force_share(problem, recalibrated))
+
+    def simulations_agree(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> bool:
+        """Whether free runs follow recordings better if their columns are changed.
+
+        A vessel model that is far from the truth may make a wrong interpretation likelier from
+        sample to sample. The coefficients are fitted to the free runs in both cases.
+
+        Args:
+            recordings: Prepared recordings.
+            changes: The changes.
+        """
+        recorded, changed = (
+            self._simulation_errors(self.problem_with_changes(recordings, own))
+            for own in ((), changes)
+        )
+        logs = [np.log(changed[family] / recorded[family]) for family in recorded]
+        if not logs:
+            return True
+        return bool(np.mean(logs) < -np.log(self.problem.config.simulate.better))
+
+    def _simulation_errors(self, problem: Problem) -> dict[str, float]:
+        """Rms errors of free runs of the vessel whose coefficients are fitted to them."""
+        horizon = free_run_horizon(problem, problem.recordings)
+        start = fit_baseline(problem).recalibrated
+        errors = output_errors(problem, start, problem.recordings, horizon)
+        found = fit_to_free_runs(errors, start).model
+        runs = free_runs(problem, {MODEL: found}, problem.recordings, horizon)
+        return {family: rms[MODEL] for family, rms in rms_errors(runs).items() if rms[MODEL] > 0.0}
 
     def is_explained(self, problem: Problem) -> bool:
         """Whether the vessel model as specified explains the recordings of an estimation problem.
@@ -285,6 +316,8 @@ def _clear_finding(
     if gain < required or best - second < config.compare_min_lead:
         return None
     chosen, score = ties[0]
+    if not comparison.simulations_agree(recordings, chosen.changes):
+        return None
     if chosen.name == "heading_turned":
         chosen = _refined_rotation(chosen, recordings, comparison)
     vessel = comparison.problem.program.vessel.name

@@ -19,6 +19,19 @@ class SimulateConfig:
     step_gain: float = setting(
         0.1, "nats", "A smaller gain ends a fit; parameters then move by a fraction of their sd."
     )
+    budget: int = setting(
+        600_000_000,
+        "steps x dof",
+        "Work of the fits to free runs, counted as in `select.budget`; then no further effect is "
+        "dropped or added. 600 million take two to four minutes, so that a diagnosis ends within "
+        "ten minutes of CPU.",
+        low=1,
+    )
+    clear_gain: float = setting(
+        10.0,
+        "nats",
+        "Gain of an effect by its size and deviation above which it is not dropped on trial.",
+    )
     better: float = setting(
         1.05,
         "1",
@@ -39,9 +52,9 @@ class SimulateConfig:
         "for predictions, and held-out recordings decide, too.",
     )
     followed: int = setting(
-        8, "count", "Candidates of the largest predicted gain that get a rough fit.", low=1
+        10, "count", "Candidates of the largest predicted gain that get a rough fit.", low=1
     )
     followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
     fitted: int = setting(
-        3, "count", "Candidates of the largest gain of a rough fit that are fitted in full.", low=1
+        5, "count", "Candidates of the largest gain of a rough fit that are fitted in full.", low=1
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnosis.filter import FreeRunStarts
-from boatsim.diagnosis.fit import ParameterSpace, log_truncation_probability
+from boatsim.diagnosis.fit import ParameterSpace, broyden_update, log_truncation_probability
 from boatsim.diagnosis.output_error.errors import OutputErrors
 from boatsim.diagnosis.problem import Fit
 from boatsim.physics.base import Array
@@ -47,25 +47,37 @@ def fit_to_free_runs(
 ) -> OutputErrorFit:
     """Fit the parameters of a model to free runs by damped Gauss-Newton steps.
 
-    The prior keeps what the free runs do not determine near the value of the vessel file.
+    The prior keeps what the free runs do not determine near the value of the vessel file. As in the
+    fit with the Kalman filter, derivatives are updated from each step (Broyden 1965), and computed
+    again where a step does not gain what they predicted.
 
     Args:
         errors: Errors of free runs over the fitted recordings.
         start: Model with the values from which the fit starts.
         fixed_effects: Effects whose parameters keep their values.
     """
-    config = errors.problem.config.simulate
+    config = errors.problem.config
     here = _evaluate(errors, start, fixed_effects)
-    damping = 0.0
-    for _ in range(config.steps):
+    damping, exact = 0.0, True
+    for _ in range(config.simulate.steps):
         further, damping = _step(errors, here, damping)
         if further is None:
-            break
+            if exact:
+                break
+            here, exact = _with_derivatives(errors, here), True
+            continue
         gain = further.score - here.score
-        here = _with_derivatives(errors, further)
-        damping /= errors.problem.config.fit.damping_growth
-        if gain < config.step_gain:
+        exact = gain < config.fit.broyden_share * _predicted_gain(here, further.model.theta)
+        here = (
+            _with_derivatives(errors, further)
+            if exact
+            else _with_updated_derivatives(here, further)
+        )
+        damping /= config.fit.damping_growth
+        if gain < config.simulate.step_gain:
             break
+    if not exact:
+        here = _with_derivatives(errors, here)
     return _with_covariance(here)
 
 
@@ -127,6 +139,26 @@ def _with_derivatives(errors: OutputErrors, here: OutputErrorFit) -> OutputError
     return replace(here, J=J)
 
 
+def _with_updated_derivatives(before: OutputErrorFit, after: OutputErrorFit) -> OutputErrorFit:
+    """Return the free runs after a step with the derivatives before it, corrected by the step."""
+    step = (after.model.theta - before.model.theta) / ParameterSpace(after.model.free).sd
+    J = broyden_update(before.J, after.residuals - before.residuals, step)
+    J[:, list(after.fixed)] = 0.0
+    return replace(after, J=J)
+
+
+def _predicted_gain(here: OutputErrorFit, theta: Array) -> float:
+    """Gain of the log posterior that the derivatives predict for a step."""
+    g = _gradient(here)
+    return ParameterSpace(here.model.free).predicted_gain(here.J, g, here.model.theta, theta)
+
+
+def _gradient(here: OutputErrorFit) -> Array:
+    """Gradient (F,) of the log posterior by the parameters, in prior sds."""
+    space = ParameterSpace(here.model.free)
+    return np.asarray(-here.J.T @ here.residuals - (here.model.theta - space.mean) / space.sd)
+
+
 def _step(
     errors: OutputErrors,
     here: OutputErrorFit,
@@ -140,7 +172,7 @@ def _step(
     """
     config = errors.problem.config.fit
     model, space = here.model, ParameterSpace(here.model.free)
-    g = -here.J.T @ here.residuals - (model.theta - space.mean) / space.sd
+    g = _gradient(here)
     A = here.J.T @ here.J
     A[here.fitted, here.fitted] += HELD
     for _ in range(config.most_dampings):

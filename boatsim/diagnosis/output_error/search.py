@@ -19,6 +19,7 @@ from boatsim.diagnosis.output_error.errors import output_errors
 from boatsim.diagnosis.output_error.fit import OutputErrorFit, add_parameters, fit_to_free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.screening import gain_along, starting_fits
 
 BEFORE, AFTER = "before", "after"
@@ -37,6 +38,7 @@ class OutputErrorSearch:
         start: Fit,
         held_out: Sequence[MappedRecording],
         fixed_effects: Sequence[str] = (),
+        budget: SearchBudget | None = None,
     ) -> None:
         """Fit the parameters of a vessel to free runs.
 
@@ -45,9 +47,11 @@ class OutputErrorSearch:
             start: The vessel with the parameters that the Kalman filter found.
             held_out: Held-out recordings, at least one.
             fixed_effects: Effects that stay, with their parameters.
+            budget: Work that may be done; None: that of the configuration, from now on.
         """
         self.problem, self.held_out, self.fixed_effects = problem, held_out, fixed_effects
         self.config = problem.config.simulate
+        self.budget = budget or SearchBudget(problem.work_count, self.config.budget)
         self.horizon = free_run_horizon(problem, held_out)
         self._accept(self._fitted(start))
 
@@ -62,12 +66,20 @@ class OutputErrorSearch:
         Those over held-out recordings must not get clearly worse either.
         """
         for name in reversed(self.model.effects):
-            if name in self.fixed_effects:
+            if name in self.fixed_effects or self.budget.is_spent or self._is_clear(name):
                 continue
             fewer = self._fitted(remove_effect(self.problem, self.model, name))
             worse = self.held_out_ratio(fewer.model) > self.problem.config.validate.worse
             if fewer.evidence >= self.best.evidence and not worse:
                 self._accept(fewer)
+
+    def _is_clear(self, name: str) -> bool:
+        """Whether an effect differs so clearly from none that it need not be dropped on trial."""
+        model = self.model
+        own = [j for j, f in enumerate(model.free) if f.effect == name and not f.relative]
+        away = np.array([model.theta[j] - model.free[j].mean for j in own])
+        spread = model.covariance[np.ix_(own, own)]
+        return float(away @ np.linalg.pinv(spread) @ away) > 2.0 * self.config.clear_gain
 
     def drop_if_clearly_better(self, name: str) -> bool:
         """Drop an effect whose parameters are fixed, if free runs are clearly better without it.
@@ -92,6 +104,8 @@ class OutputErrorSearch:
             candidates: Names of the candidates.
         """
         for _ in range(self.config.effects):
+            if self.budget.is_spent:
+                return
             for further in self._most_probable(candidates):
                 gain = further.evidence - self.best.evidence
                 if gain >= self.config.effect_gain and self._helps(further.model):
@@ -130,6 +144,8 @@ class OutputErrorSearch:
         """The fits with one more effect, the most probable one first."""
         rough = []
         for start in self._promising(candidates)[: self.config.followed]:
+            if self.budget.is_spent:
+                return []
             steps = self.config.followed_steps
             rough.append(add_parameters(self.errors, self.best, start, steps))
         rough.sort(key=lambda one: -one.score)

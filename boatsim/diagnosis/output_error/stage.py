@@ -15,6 +15,7 @@ from boatsim.diagnosis.output_error.search import OutputErrorSearch, error_ratio
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import Ranking
 
 
@@ -62,16 +63,21 @@ def fit_to_simulations(
     if not ranking.has_unexplained_force_or_cause or ranking.divergences:
         return ranking
     comparison = _Comparison(problem, held_out)
-    retuned = OutputErrorSearch(problem, ranking.recalibrated, held_out).model
+    budget = SearchBudget(problem.work_count, problem.config.simulate.budget)
+    simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=budget)
+    retuned = simple.model
     better = comparison.is_clearly_better(retuned, ranking.recalibrated)
     stated = [
         one.name
         for one in ranking.named
         if not refines_estimated_number(problem, ranking.best, one.name)
     ]
-    contradicted = contradicted_effects(problem, ranking.best, stated, held_out)
+    contradicted = contradicted_effects(problem, ranking.best, stated, held_out, budget)
     kept = [name for name in stated if name not in contradicted]
-    corrected = _best_corrected_vessel(problem, ranking, retuned, kept, contradicted, held_out)
+    if kept:
+        only_stated = _without_effects(problem, ranking.best, kept)
+        simple = OutputErrorSearch(problem, only_stated, held_out, kept, budget)
+    corrected = _better_start(ranking, simple, kept, contradicted)
     corrected.add_effects(candidates)
     found = ranking
     if better:
@@ -82,7 +88,11 @@ def fit_to_simulations(
 
 
 def contradicted_effects(
-    problem: Problem, best: Fit, stated: Sequence[str], held_out: Sequence[MappedRecording]
+    problem: Problem,
+    best: Fit,
+    stated: Sequence[str],
+    held_out: Sequence[MappedRecording],
+    budget: SearchBudget | None = None,
 ) -> tuple[str, ...]:
     """Return those effects without which free runs are clearly more probable.
 
@@ -94,39 +104,42 @@ def contradicted_effects(
         best: Fit of the vessel model with some candidate effects.
         stated: Names of effects that are stated as causes.
         held_out: Held-out recordings, at least one.
+        budget: Work that may be done; None: that of the configuration.
     """
     found = list[str]()
     if not stated:
         return ()
-    search = OutputErrorSearch(problem, best, held_out, stated)
+    search = OutputErrorSearch(problem, best, held_out, stated, budget)
     for name in stated:
         if search.drop_if_clearly_better(name):
             found.append(name)
     return tuple(found)
 
 
-def _best_corrected_vessel(
-    problem: Problem,
+def _better_start(
     ranking: Ranking,
-    retuned: Fit,
+    simple: OutputErrorSearch,
     kept: Sequence[str],
     contradicted: Sequence[str],
-    held_out: Sequence[MappedRecording],
 ) -> OutputErrorSearch:
     """The better start for further effects: all that the filter selected, or what is stated."""
-    start = ranking.best
-    for name in contradicted:
-        start = remove_effect(problem, start, name)
-    whole = OutputErrorSearch(problem, start, held_out, kept)
+    others = [name for name in ranking.best.effects if name not in contradicted]
+    if set(others) == set(kept):
+        return simple
+    problem, held_out = simple.problem, simple.held_out
+    start = _without_effects(problem, ranking.best, others)
+    whole = OutputErrorSearch(problem, start, held_out, kept, simple.budget)
     whole.drop_effects()
-    bare = retuned
-    if kept:
-        bare = ranking.best
-        for name in ranking.best.effects:
-            if name not in kept:
-                bare = remove_effect(problem, bare, name)
-    simple = OutputErrorSearch(problem, bare, held_out, kept)
     return simple if whole.held_out_ratio(simple.model) <= 1.0 else whole
+
+
+def _without_effects(problem: Problem, best: Fit, kept: Sequence[str]) -> Fit:
+    """A fit with some of its effects only, not refitted."""
+    found = best
+    for name in best.effects:
+        if name not in kept:
+            found = remove_effect(problem, found, name)
+    return found
 
 
 def _with_retuned(

@@ -17,12 +17,17 @@ def meaning(name: str, column: str) -> Reinterpretation:
     return Reinterpretation(name, f"{column} is reversed", scaling_corrections([column], -1.0))
 
 
-def finding(**evidence: float) -> Finding | None:
-    """The finding where reversed columns have this evidence, and the log as recorded has 0 nats."""
+def finding(agrees: bool = True, **evidence: float) -> Finding | None:
+    """The finding where reversed columns have this evidence, and the log as recorded has 0 nats.
+
+    Simulations agree with every reversed column, or with none.
+    """
     scored = [(meaning(name, name), Score(value, 0.1)) for name, value in evidence.items()]
     program = SimpleNamespace(vessel=SimpleNamespace(name="boat"))
     comparison: Any = SimpleNamespace(
-        config=DEFAULT.checks, problem=SimpleNamespace(program=program)
+        config=DEFAULT.checks,
+        problem=SimpleNamespace(program=program),
+        simulations_agree=lambda recordings, changes: agrees,
     )
     recordings: Any = [range(ROWS)]
     return _clear_finding(scored, Score(0.0, 0.5), recordings, comparison)
@@ -52,3 +57,7 @@ def test_rivals_are_alternatives(
 
 def test_a_small_gain_over_the_log_as_recorded_is_no_finding() -> None:
     assert finding(r=DEFAULT.checks.compare_min_gain - 1.0) is None
+
+
+def test_a_meaning_with_which_simulations_are_no_better_is_no_finding() -> None:
+    assert finding(agrees=False, r=90.0, y=100.0) is None

@@ -6,7 +6,13 @@ import pytest
 
 from boatsim.diagnosis.answer.confirmation import effect_error_entry
 from boatsim.diagnosis.answer.findings import Findings
-from boatsim.diagnosis.answer.schema import Answer, PossibleEntry, RecalibrationEntry
+from boatsim.diagnosis.answer.schema import (
+    AddedEntry,
+    Answer,
+    PossibleEntry,
+    RecalibrationEntry,
+)
+from boatsim.diagnosis.answer.verdict import verdict_sentences
 from boatsim.diagnosis.open_set.confirmation import Errors
 from boatsim.diagnosis.report.confirmation import effect_sentences, recalibration_sentences
 from boatsim.diagnosis.report.page import report_html, report_markdown
@@ -73,6 +79,12 @@ def test_an_effect_that_held_out_recordings_do_not_confirm_is_marked() -> None:
             "The corrected vessel is the retuned one: it would predict the held-out recordings "
             "worse with what is also possible (prop walk).",
         ),
+        (
+            {"adopted": True, "undetermined": [], "refitted": {}, "by_free_runs": True},
+            "Because the cause of a force is unknown, the numbers of the retuned vessel were fitted "
+            "to simulations of the fitted recordings with the recorded commands alone; held-out "
+            "recordings are predicted better so.",
+        ),
     ],
 )
 def test_coefficients_and_effects_that_are_not_adopted_are_stated(
@@ -92,3 +104,68 @@ def test_coefficients_and_effects_that_are_not_adopted_are_stated(
     assert recalibration_sentences(findings)[0] == expected
     for text in everywhere(findings):
         assert expected in text
+
+
+@pytest.mark.parametrize(
+    ("in_patch", "expected"),
+    [
+        (True, "the numbers of the retuned and corrected vessel were fitted to simulations"),
+        (False, "It does not have prop walk: simulations are at least as good without it."),
+    ],
+)
+def test_what_the_fit_to_simulations_changes_is_stated(in_patch: bool, expected: str) -> None:
+    findings = planar()
+    entry: RecalibrationEntry = {
+        "adopted": True,
+        "undetermined": [],
+        "refitted": {},
+        "by_free_runs": True,
+    }
+    possible: PossibleEntry = {
+        "name": "prop_walk",
+        "probability": 0.2,
+        "gain_nats": 9.0,
+        "words": "the propellers push the stern sideways",
+        "why": "several weak signs",
+        "in_patch": in_patch,
+    }
+    answer: Answer = {
+        **findings.answer,
+        "recalibration": entry,
+        "also_possible": [possible],
+        "by_free_runs": True,
+    }
+    assert expected in " ".join(recalibration_sentences(replace(findings, answer=answer)))
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (["weak_reverse"], "weak reverse: simulations get better by it, but it is not shown to be"),
+        (["weak_reverse", "prop_walk"], "weak reverse and prop walk: simulations get better by"),
+    ],
+)
+def test_effects_added_for_predictions_are_listed_and_not_called_causes(
+    names: list[str], expected: str
+) -> None:
+    findings = planar()
+    added: list[AddedEntry] = []
+    for name in names:
+        added.append(
+            {
+                "name": name,
+                "kind": "physics",
+                "words": f"meaning of {name}",
+                "parameters": {"factor": {"value": 0.61, "sd": 0.04, "unit": ""}},
+            }
+        )
+    findings = replace(findings, answer={**findings.answer, "added": added})
+    assert f"For predictions, the corrected vessel also has {expected}" in verdict_sentences(
+        findings.answer
+    )
+    sections = report_sections(findings)
+    for page in (report_html(findings, sections), report_markdown(findings, sections)):
+        assert "They may stand in for other causes." in page
+        for name in names:
+            assert f"Meaning of {name}" in page.replace("\\_", "_")
+        assert "0.610 ± 0.040" in page
