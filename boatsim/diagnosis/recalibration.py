@@ -66,10 +66,10 @@ def decide_recalibration(
             other manoeuvres and free runs have to determine them. Else it is only what the vessel
             with effects is compared with, and its posterior suffices.
     """
+    kept = undetermined_coefficients(refitted, problem.config.fit)
     if is_answer:
-        kept = undetermined_by_simulations(problem, refitted)
-    else:
-        kept = undetermined_coefficients(refitted, problem.config.fit)
+        known = [i for i in kept if _is_known(refitted, i, problem.config.fit)]
+        kept = sorted({*known, *undetermined_by_simulations(problem, refitted)})
     names = tuple(f"{refitted.free[i].effect}.{refitted.free[i].name}" for i in kept)
     found = fix_coefficients(problem, refitted, kept)
     horizon = free_run_horizon(problem, held_out)
@@ -139,12 +139,22 @@ def fix_coefficients(problem: Problem, found: Fit, kept: Sequence[int]) -> Fit:
 def undetermined_by_simulations(problem: Problem, found: Fit) -> list[int]:
     """Return the indices of the fitted coefficients that free runs do not determine.
 
+    Coefficients that the vessel file knows well are not among them: their prior limits what the
+    filter can read from disturbances, and it sees more than free runs do.
+
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
         found: Converged fit of the vessel model with some candidate effects.
     """
     covariance = covariance_by_simulations(problem, found)
-    return undetermined_coefficients(replace(found, covariance=covariance), problem.config.fit)
+    config = problem.config.fit
+    kept = undetermined_coefficients(replace(found, covariance=covariance), config)
+    return [i for i in kept if not _is_known(found, i, config)]
+
+
+def _is_known(found: Fit, i: int, config: FitConfig) -> bool:
+    """Whether the vessel file knows a coefficient well."""
+    return found.free[i].sd <= config.known_sd
 
 
 def undetermined_coefficients(found: Fit, config: FitConfig) -> list[int]:

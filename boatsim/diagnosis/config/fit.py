@@ -210,6 +210,12 @@ class FitConfig:
         1e-3,
         1.0,
     )
+    known_sd: float = setting(
+        0.2,
+        "1",
+        "Relative prior sd up to which the vessel file knows a coefficient. Measured ones have "
+        "0.05 to 0.1, those of a rule of thumb or of another vessel 0.3 to 1.",
+    )
     undetermined_sd: float = setting(
         0.7,
         "prior sd",

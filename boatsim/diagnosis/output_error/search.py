@@ -15,7 +15,7 @@ from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, remove_effect
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs
-from boatsim.diagnosis.output_error.errors import output_errors
+from boatsim.diagnosis.output_error.errors import OutputErrors, output_errors
 from boatsim.diagnosis.output_error.fit import OutputErrorFit, add_parameters, fit_to_free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
@@ -53,6 +53,7 @@ class OutputErrorSearch:
         self.config = problem.config.simulate
         self.budget = budget or SearchBudget(problem.work_count, self.config.budget)
         self.horizon = free_run_horizon(problem, held_out)
+        self.errors = self._errors_of(start)
         self._accept(self._fitted(start))
 
     @property
@@ -129,16 +130,17 @@ class OutputErrorSearch:
         )
 
     def _fitted(self, start: Fit) -> OutputErrorFit:
-        """Fit a vessel, in units of the errors of the best one so far, at first of its own."""
-        if not hasattr(self, "errors"):
-            self.errors = output_errors(self.problem, start, self.problem.recordings, self.horizon)
+        """Fit a vessel, in units of the errors of the best one so far."""
         return fit_to_free_runs(self.errors, start, self.fixed_effects)
 
     def _accept(self, found: OutputErrorFit) -> None:
         """Make a fit the best one, and its errors the units of the next ones."""
-        recordings = self.problem.recordings
-        self.errors = output_errors(self.problem, found.model, recordings, self.horizon)
-        self.best = fit_to_free_runs(self.errors, found.model, self.fixed_effects)
+        self.errors = self._errors_of(found.model)
+        self.best = self._fitted(found.model)
+
+    def _errors_of(self, reference: Fit) -> OutputErrors:
+        """Errors of free runs over the fitted recordings in units of those of a vessel."""
+        return output_errors(self.problem, reference, self.problem.recordings, self.horizon)
 
     def _most_probable(self, candidates: Sequence[str]) -> list[OutputErrorFit]:
         """The fits with one more effect, the most probable one first."""

@@ -1,7 +1,7 @@
 """The simulate stage: where a force remains unexplained, free runs decide what predicts best."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,24 +17,6 @@ from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import Ranking
-
-
-@dataclass(frozen=True)
-class _Comparison:
-    """Compares vessels by their free runs over held-out recordings."""
-
-    problem: Problem
-    held_out: Sequence[MappedRecording]
-
-    def is_clearly_better(self, found: Fit, reference: Fit) -> bool:
-        """Whether a vessel predicts clearly better on the whole, and no group much worse."""
-        horizon = free_run_horizon(self.problem, self.held_out)
-        ratio = error_ratio(self.problem, found, reference, self.held_out, horizon)
-        if ratio * self.problem.config.simulate.better > 1.0:
-            return False
-        return not generalization.harmed_groups(
-            self.problem, reference, found, self.held_out, horizon
-        )
 
 
 def fit_to_simulations(
@@ -62,11 +44,10 @@ def fit_to_simulations(
     """
     if not ranking.has_unexplained_force_or_cause or ranking.divergences:
         return ranking
-    comparison = _Comparison(problem, held_out)
     budget = SearchBudget(problem.work_count, problem.config.simulate.budget)
     simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=budget)
     retuned = simple.model
-    better = comparison.is_clearly_better(retuned, ranking.recalibrated)
+    better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)
     stated = [
         one.name
         for one in ranking.named
@@ -82,7 +63,7 @@ def fit_to_simulations(
     found = ranking
     if better:
         found = _with_retuned(problem, ranking, retuned, held_out)
-    if comparison.is_clearly_better(corrected.model, found.best):
+    if _is_clearly_better(problem, corrected.model, found.best, held_out):
         found = _with_corrected(found, corrected.model, contradicted)
     return found
 
@@ -114,6 +95,17 @@ def contradicted_effects(
         if search.drop_if_clearly_better(name):
             found.append(name)
     return tuple(found)
+
+
+def _is_clearly_better(
+    problem: Problem, found: Fit, reference: Fit, held_out: Sequence[MappedRecording]
+) -> bool:
+    """Whether a vessel predicts held-out recordings clearly better, and no group much worse."""
+    horizon = free_run_horizon(problem, held_out)
+    ratio = error_ratio(problem, found, reference, held_out, horizon)
+    if ratio * problem.config.simulate.better > 1.0:
+        return False
+    return not generalization.harmed_groups(problem, reference, found, held_out, horizon)
 
 
 def _better_start(
