@@ -90,8 +90,13 @@ class Findings:
 
     @property
     def has_added_effects(self) -> bool:
-        """Whether the patched vessel has any effect in addition to those of the vessel file."""
-        if self.answer["effects"]:
+        """Whether the patched vessel has any effect in addition to those of the vessel file.
+
+        Effects that are only possible, or that were added for better simulations, count too.
+        """
+        if self.answer["effects"] or self.answer.get("added"):
+            return True
+        if any(entry.get("in_patch") for entry in self.answer.get("also_possible", ())):
             return True
         for entry in self.answer.get("refined", ()):
             if "parameters" in entry:  # of an effect, not of a coefficient

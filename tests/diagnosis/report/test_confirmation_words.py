@@ -169,3 +169,22 @@ def test_effects_added_for_predictions_are_listed_and_not_called_causes(
         for name in names:
             assert f"Meaning of {name}" in page.replace("\\_", "_")
         assert "0.610 ± 0.040" in page
+
+
+def test_a_corrected_vessel_of_possible_or_added_effects_is_compared_with_the_retuned_one() -> None:
+    findings = planar()
+    bare: Answer = {**findings.answer, "effects": [], "described": [], "also_possible": []}
+    added: AddedEntry = {"name": "wind", "kind": "physics", "words": "wind", "parameters": {}}
+    possible: PossibleEntry = {
+        "name": "wind",
+        "probability": 0.2,
+        "gain_nats": 9.0,
+        "words": "wind",
+        "why": "several weak signs",
+        "in_patch": True,
+    }
+    assert not replace(findings, answer=bare).has_added_effects
+    assert replace(findings, answer={**bare, "added": [added]}).has_added_effects
+    assert replace(findings, answer={**bare, "also_possible": [possible]}).has_added_effects
+    dropped: PossibleEntry = {**possible, "in_patch": False}
+    assert not replace(findings, answer={**bare, "also_possible": [dropped]}).has_added_effects
