@@ -149,7 +149,9 @@ def _with_retuned(
 
 def _with_corrected(ranking: Ranking, found: Fit, contradicted: Sequence[str]) -> Ranking:
     """The ranking with the corrected vessel that free runs gave."""
-    before = {*(one.name for one in (*ranking.named, *ranking.doubtful)), *ranking.described_terms}
+    before = {one.name for one in (*ranking.named, *ranking.doubtful)}
+    if ranking.description is not None:  # its terms, with events of single recordings
+        before |= {one.term.name for one in ranking.description.terms}
     named, doubtful = list(ranking.named), list(ranking.doubtful)
     for one in ranking.named:
         if one.name not in found.effects:

@@ -6,17 +6,23 @@ import numpy as np
 import pytest
 from pushed_boat import DAMPING, Missing, laid, push, sail
 
+from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.output_error.errors import output_errors
 from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.output_error.search import OutputErrorSearch
-from boatsim.diagnosis.output_error.stage import contradicted_effects, fit_to_simulations
+from boatsim.diagnosis.output_error.stage import (
+    _with_corrected,
+    contradicted_effects,
+    fit_to_simulations,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Array
+from boatsim.physics.effects.described_force import DescribedForce
 
 WEAK_ASTERN = 0.4  # share of the thrust astern that is missing
 ODD = 0.06  # m/s at which the damping is as large as the forces of unknown cause
@@ -148,3 +154,14 @@ def test_where_a_force_is_unexplained_the_corrected_vessel_predicts_no_worse() -
     assert found.by_free_runs and "weak_reverse" in found.added
     assert error(problem, found.best, held_out) * 1.05 < error(problem, ranking.best, held_out)
     assert set(found.best.effects) <= {*names, "weak_reverse"}
+
+
+def test_an_event_of_a_single_recording_is_not_called_an_added_effect() -> None:
+    problem, retuned = laid(sail("fitted", 1, odd)[0])
+    held_out = held_out_of(problem, odd)
+    ranking = select_and_rank_candidates(problem, ("weak_reverse",), held_out)
+    term = DescribedForce(name="described_1", axis="surge", run="fitted")
+    description = SymbolicDescription((FittedTerm(term, 0.1, 20.0, carries=False),), retuned, 0.0)
+    corrected = replace(retuned, effects=("described_1", "weak_reverse"))
+    found = _with_corrected(replace(ranking, description=description), corrected, ())
+    assert found.added == ("weak_reverse",)
