@@ -108,23 +108,24 @@ class Comparison:
             recordings: Prepared recordings.
             changes: The changes.
         """
-        recorded, changed = (
-            self._simulation_errors(self.problem_with_changes(recordings, own))
-            for own in ((), changes)
-        )
+        recorded = self._simulation_errors(self.problem_with_changes(recordings))
+        changed = self._simulation_errors(self.problem_with_changes(recordings, changes))
+        if not recorded.keys() <= changed.keys():  # a simulation with the changes diverges
+            return False
         logs = [np.log(changed[family] / recorded[family]) for family in recorded]
         if not logs:
             return True
         return bool(np.mean(logs) < -np.log(self.problem.config.simulate.better))
 
     def _simulation_errors(self, problem: Problem) -> dict[str, float]:
-        """Rms errors of free runs of the vessel whose coefficients are fitted to them."""
+        """Rms errors of free runs of the vessel fitted to them; those that diverge are left out."""
         horizon = free_run_horizon(problem, problem.recordings)
         start = fit_baseline(problem).recalibrated
         errors = output_errors(problem, start, problem.recordings, horizon)
         found = fit_to_free_runs(errors, start).model
         runs = free_runs(problem, {MODEL: found}, problem.recordings, horizon)
-        return {family: rms[MODEL] for family, rms in rms_errors(runs).items() if rms[MODEL] > 0.0}
+        found_errors = {family: rms[MODEL] for family, rms in rms_errors(runs).items()}
+        return {family: rms for family, rms in found_errors.items() if 0.0 < rms < np.inf}
 
     def is_explained(self, problem: Problem) -> bool:
         """Whether the vessel model as specified explains the recordings of an estimation problem.

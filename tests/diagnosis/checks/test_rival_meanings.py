@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from boatsim.diagnosis.checks.finding import Finding, scaling_corrections
-from boatsim.diagnosis.checks.hypothesis_test import Score, _clear_finding
+from boatsim.diagnosis.checks.hypothesis_test import Comparison, Score, _clear_finding
 from boatsim.diagnosis.checks.reinterpretations import Reinterpretation
 from boatsim.diagnosis.config import DEFAULT
 
@@ -61,3 +61,26 @@ def test_a_small_gain_over_the_log_as_recorded_is_no_finding() -> None:
 
 def test_a_meaning_with_which_simulations_are_no_better_is_no_finding() -> None:
     assert finding(agrees=False, r=90.0, y=100.0) is None
+
+
+@pytest.mark.parametrize(
+    ("recorded", "changed", "agrees"),
+    [
+        ({"position": 1.0, "heading": 1.0}, {"position": 0.5, "heading": 1.1}, True),
+        ({"position": 1.0, "heading": 1.0}, {"position": 0.99, "heading": 1.0}, False),
+        ({"position": 1.0, "heading": 1.0}, {"position": 0.5}, False),  # the heading diverges
+        ({}, {}, True),  # too short for a simulation
+    ],
+)
+def test_simulations_decide_between_meanings_by_their_errors(
+    recorded: dict[str, float],
+    changed: dict[str, float],
+    agrees: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    errors = iter((recorded, changed))
+    monkeypatch.setattr(Comparison, "problem_with_changes", lambda *_: None)
+    monkeypatch.setattr(Comparison, "_simulation_errors", lambda *_: next(errors))
+    problem: Any = SimpleNamespace(config=DEFAULT)
+    nothing: Any = None
+    assert Comparison(problem, nothing, DEFAULT.checks).simulations_agree([], ()) is agrees

@@ -42,6 +42,18 @@ def confirmed(value: bool) -> Findings:
     return replace(findings, answer={**findings.answer, "effects": [effect]})  # type: ignore
 
 
+def prop_walk(in_patch: bool) -> PossibleEntry:
+    """An effect that is only possible."""
+    return {
+        "name": "prop_walk",
+        "probability": 0.2,
+        "gain_nats": 9.0,
+        "words": "the propellers push the stern sideways",
+        "why": "several weak signs",
+        "in_patch": in_patch,
+    }
+
+
 def everywhere(findings: Findings) -> list[str]:
     """What the terminal, the page and the Markdown file show."""
     sections = report_sections(findings)
@@ -91,14 +103,7 @@ def test_coefficients_and_effects_that_are_not_adopted_are_stated(
     entry: RecalibrationEntry, expected: str
 ) -> None:
     findings = planar()
-    possible: PossibleEntry = {
-        "name": "prop_walk",
-        "probability": 0.2,
-        "gain_nats": 9.0,
-        "words": "the propellers push the stern sideways",
-        "why": "several weak signs",
-        "in_patch": "corrected vessel is" not in expected,
-    }
+    possible = prop_walk(in_patch="corrected vessel is" not in expected)
     answer: Answer = {**findings.answer, "recalibration": entry, "also_possible": [possible]}
     findings = replace(findings, answer=answer)
     assert recalibration_sentences(findings)[0] == expected
@@ -121,14 +126,7 @@ def test_what_the_fit_to_simulations_changes_is_stated(in_patch: bool, expected:
         "refitted": {},
         "by_free_runs": True,
     }
-    possible: PossibleEntry = {
-        "name": "prop_walk",
-        "probability": 0.2,
-        "gain_nats": 9.0,
-        "words": "the propellers push the stern sideways",
-        "why": "several weak signs",
-        "in_patch": in_patch,
-    }
+    possible = prop_walk(in_patch=in_patch)
     answer: Answer = {
         **findings.answer,
         "recalibration": entry,
@@ -175,16 +173,8 @@ def test_a_corrected_vessel_of_possible_or_added_effects_is_compared_with_the_re
     findings = planar()
     bare: Answer = {**findings.answer, "effects": [], "described": [], "also_possible": []}
     added: AddedEntry = {"name": "wind", "kind": "physics", "words": "wind", "parameters": {}}
-    possible: PossibleEntry = {
-        "name": "wind",
-        "probability": 0.2,
-        "gain_nats": 9.0,
-        "words": "wind",
-        "why": "several weak signs",
-        "in_patch": True,
-    }
+    possible, dropped = prop_walk(in_patch=True), prop_walk(in_patch=False)
     assert not replace(findings, answer=bare).has_added_effects
     assert replace(findings, answer={**bare, "added": [added]}).has_added_effects
     assert replace(findings, answer={**bare, "also_possible": [possible]}).has_added_effects
-    dropped: PossibleEntry = {**possible, "in_patch": False}
     assert not replace(findings, answer={**bare, "also_possible": [dropped]}).has_added_effects
