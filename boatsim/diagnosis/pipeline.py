@@ -20,6 +20,7 @@ from boatsim.diagnosis import loading
 from boatsim.diagnosis.answer.compose import compose_answer
 from boatsim.diagnosis.answer.findings import Findings
 from boatsim.diagnosis.answer.incomplete import (
+    EFFECTS_NOT_ADDED,
     NOT_SELECTED_AGAIN,
     TERMS_NOT_SOUGHT,
     TIME_NOT_CHOSEN,
@@ -567,7 +568,10 @@ def improve_simulations(question: Question, decision: Decision, ranking: Ranking
         decision: The problem with its correlation time.
         ranking: Selected and described effects, with the adopted coefficients.
     """
-    return fit_to_simulations(decision.problem, ranking, question.candidates, question.held_out)
+    problem = decision.problem
+    budget = SearchBudget(problem.work_count, problem.config.simulate.budget)
+    found = fit_to_simulations(problem, ranking, question.candidates, question.held_out, budget)
+    return _with_skipped(found, EFFECTS_NOT_ADDED) if budget.is_spent else found
 
 
 def validate_on_held_out(question: Question, decision: Decision, ranking: Ranking) -> Evaluation:

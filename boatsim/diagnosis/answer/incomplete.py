@@ -13,7 +13,8 @@ NOT_SELECTED_AGAIN = (
     "the effects were not selected again with the correlation time that predicts best"
 )
 TERMS_NOT_SOUGHT = "further terms of the description were not sought"
-AFTER_COMPARISON = (TIME_NOT_CHOSEN, NOT_SELECTED_AGAIN, TERMS_NOT_SOUGHT)
+EFFECTS_NOT_ADDED = "further effects were not added for predictions"
+AFTER_COMPARISON = (TIME_NOT_CHOSEN, NOT_SELECTED_AGAIN, TERMS_NOT_SOUGHT, EFFECTS_NOT_ADDED)
 
 INCOMPLETE = (
     "The search ended before it had compared all candidates, because its budget was spent; "

@@ -24,6 +24,7 @@ def fit_to_simulations(
     ranking: Ranking,
     candidates: Sequence[str],
     held_out: Sequence[MappedRecording],
+    budget: SearchBudget,
 ) -> Ranking:
     """Fit the retuned and the corrected vessel to free runs, where a force remains unexplained.
 
@@ -38,13 +39,13 @@ def fit_to_simulations(
         ranking: Selected and described effects, with the adopted coefficients.
         candidates: Names of the candidates that may be added.
         held_out: Held-out recordings, at least one.
+        budget: Work that may be done; then no further effect is dropped or added.
 
     Returns:
         The ranking with the vessels that predict best; the same one if nothing is unexplained.
     """
     if not ranking.has_unexplained_force_or_cause or ranking.divergences:
         return ranking
-    budget = SearchBudget(problem.work_count, problem.config.simulate.budget)
     simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=budget)
     retuned = simple.model
     better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)

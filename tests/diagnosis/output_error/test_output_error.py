@@ -19,6 +19,7 @@ from boatsim.diagnosis.output_error.stage import (
     fit_to_simulations,
 )
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Array
@@ -51,6 +52,10 @@ def odd_and_weak_astern(t: float, y: Array, command: Array) -> Array:
 def held_out_of(problem: Problem, missing: Missing) -> list[MappedRecording]:
     recording = sail("held out", 9, missing)[0]
     return [map_recording(recording, problem.program)]
+
+
+def whole_budget(problem: Problem) -> SearchBudget:
+    return SearchBudget(problem.work_count, problem.config.simulate.budget)
 
 
 def error(problem: Problem, found: Fit, recordings: list[MappedRecording]) -> float:
@@ -141,7 +146,10 @@ def test_nothing_is_changed_where_nothing_is_unexplained() -> None:
     held_out = held_out_of(problem, nothing)
     ranking = select_and_rank_candidates(problem, ("weak_reverse",), held_out)
     assert not ranking.has_unexplained_force_or_cause
-    assert fit_to_simulations(problem, ranking, ("weak_reverse",), held_out) is ranking
+    assert (
+        fit_to_simulations(problem, ranking, ("weak_reverse",), held_out, whole_budget(problem))
+        is ranking
+    )
 
 
 def test_where_a_force_is_unexplained_the_corrected_vessel_predicts_no_worse() -> None:
@@ -150,10 +158,23 @@ def test_where_a_force_is_unexplained_the_corrected_vessel_predicts_no_worse() -
     names = ("thrust_imbalance", "prop_walk")
     ranking = select_and_rank_candidates(problem, names, held_out)
     assert ranking.has_unexplained_force_or_cause
-    found = fit_to_simulations(problem, ranking, (*names, "weak_reverse"), held_out)
+    found = fit_to_simulations(
+        problem, ranking, (*names, "weak_reverse"), held_out, whole_budget(problem)
+    )
     assert found.by_free_runs and "weak_reverse" in found.added
     assert error(problem, found.best, held_out) * 1.05 < error(problem, ranking.best, held_out)
     assert set(found.best.effects) <= {*names, "weak_reverse"}
+
+
+def test_nothing_is_added_once_the_budget_is_spent() -> None:
+    problem, _ = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    ranking = select_and_rank_candidates(problem, ("prop_walk",), held_out)
+    for work in (1, problem.config.simulate.budget):
+        budget = SearchBudget(problem.work_count, work)
+        found = fit_to_simulations(problem, ranking, ("weak_reverse",), held_out, budget)
+        assert budget.is_spent is (work == 1)
+        assert bool(found.added) is (work > 1)
 
 
 def test_an_event_of_a_single_recording_is_not_called_an_added_effect() -> None:
