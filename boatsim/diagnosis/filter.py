@@ -394,11 +394,11 @@ class MappedRecording:
         return SmoothedStates(means, covariances, gains)
 
     def free_runs(
-        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
+        self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0
     ) -> list[tuple[int, Array]]:
         """Simulate free runs: from states of the recording, with the recorded commands alone.
 
-        They start from the smoothed states at every multiple of the horizon from the first row; a
+        They start from the smoothed states, one after another from the first row; a
         remainder shorter than the horizon is omitted.
 
         Args:
@@ -406,19 +406,18 @@ class MappedRecording:
             on: (effects,) 1 for the effects that act, else 0.
             levels: Levels of sensor noise and of the latent (unmodelled) force.
             horizon: Length of each free run [s].
+            skipped: Time from the first row before which none starts [s].
 
         Returns:
             First row and channels (M, 2 NQ), as the recording would show them, of each free run.
         """
-        key = _key_of(values, on, levels, horizon)
-        return self._free_runs.result(
-            key, lambda: self._simulate_free_runs(values, on, levels, horizon)
-        )
+        key = _key_of(values, on, levels, horizon, skipped)
 
-    def _simulate_free_runs(
-        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
-    ) -> list[tuple[int, Array]]:
-        return self.simulate_from(values, on, self.free_run_starts(values, on, levels, horizon))
+        def simulate() -> list[tuple[int, Array]]:
+            starts = self.free_run_starts(values, on, levels, horizon, skipped)
+            return self.simulate_from(values, on, starts)
+
+        return self._free_runs.result(key, simulate)
 
     def simulate_from(
         self, values: Array, on: Array, begin: FreeRunStarts
@@ -457,7 +456,7 @@ class MappedRecording:
         return runs
 
     def free_run_starts(
-        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
+        self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0
     ) -> FreeRunStarts:
         """Return where free runs begin and end, and the smoothed states that they begin with.
 
@@ -466,19 +465,20 @@ class MappedRecording:
             on: (effects,) 1 for the effects that act, else 0.
             levels: Levels of sensor noise and of the latent (unmodelled) force.
             horizon: Length of each free run [s].
+            skipped: Time from the first row before which none starts [s].
         """
         nq = self.program.module.NQ
-        starts, ends = free_run_segments(self.times, horizon)
+        starts, ends = free_run_segments(self.times, horizon, skipped)
         if not starts:
             none = np.zeros(0, dtype=np.int64)
             return FreeRunStarts(none, none, np.zeros((0, 2 * nq)), ())
         means = self.smooth(values, on, levels).means
         oscillators = 2 if self._oscillates(values, on) else 0
-        first = (3 + oscillators) * nq
+        at = (3 + oscillators) * nq
         drifts = []
         for effect, acts in zip(self.program.effects, on, strict=True):
             if isinstance(effect, DriftingMeasurement) and acts:
-                drifts.append(Drift(effect.name, means[starts, first : first + nq].copy()))
+                drifts.append(Drift(effect.name, means[starts, at : at + nq].copy()))
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         return FreeRunStarts(np.array(starts), np.array(ends), states, tuple(drifts))
 
@@ -575,9 +575,9 @@ class MappedRecording:
         return LatentForce(rms**2, levels.time_constant, white)
 
 
-def _key_of(values: Array, on: Array, levels: NoiseLevels, horizon: float = 0.0) -> bytes:
+def _key_of(values: Array, on: Array, levels: NoiseLevels, *times: float) -> bytes:
     """All that a result for a recording depends on, as one key."""
-    numbers = (horizon, levels.time_constant, sorted(levels.sensors.items()))
+    numbers = (times, levels.time_constant, sorted(levels.sensors.items()))
     arrays = (values, np.asarray(on), levels.force, levels.initial_force, levels.white)
     return b"".join([repr(numbers).encode(), *(array.tobytes() for array in arrays)])
 
@@ -639,7 +639,9 @@ def _rates_of_change(t: Array, y: Array, config: FilterConfig) -> Array:
     return np.asarray((y[gap] - y)[far] / (t[gap] - t)[far])
 
 
-def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
+def free_run_segments(
+    times: Array, horizon: float, skipped: float = 0.0
+) -> tuple[list[int], list[int]]:
     """Return the first and last rows of the free runs into which a recording is divided.
 
     A free run is a simulation from a recorded state with the recorded commands alone.
@@ -647,16 +649,17 @@ def free_run_segments(times: Array, horizon: float) -> tuple[list[int], list[int
     Args:
         times: (N,) times of the rows [s].
         horizon: Length of each free run [s]; a shorter remainder is omitted.
+        skipped: Time from the first row before which none starts [s].
     """
     starts, ends = [], []
-    begin = float(times[0])
+    begin = float(times[0]) + skipped
     step = float(np.median(np.diff(times)))
     while begin + horizon <= times[-1] + 0.5 * step:
-        first = int(np.argmin(abs(times - begin)))
-        last = int(np.argmin(abs(times - begin - horizon)))
-        if last > first:
-            starts.append(first)
-            ends.append(last)
+        start = int(np.argmin(abs(times - begin)))
+        end = int(np.argmin(abs(times - begin - horizon)))
+        if end > start:
+            starts.append(start)
+            ends.append(end)
         begin += horizon
     return starts, ends
 

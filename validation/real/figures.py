@@ -10,17 +10,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.checks import data_cleaning
 from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.free_runs import free_runs, rms_errors
+from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.progress import Report
 from validation.real.common import effects_of, format_fixed, parameter_text, print_table
 
+# The rms distance from the recorded position is this times the rms error over both coordinates
+DISTANCE = 2.0**0.5
 HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
 
 
@@ -32,6 +36,26 @@ class Figures:
     diagnosis: Diagnosis
     errors: Mapping[float, Mapping[str, Mapping[str, float]]]  # window, family, model -> rms
     cpu_s: float  # of the diagnosis
+    by_source: Mapping[str, Mapping[str, float]] | None = None  # in the windows of the source
+
+
+@dataclass(frozen=True)
+class SourceWindows:
+    """Windows in which the README of a set judges models, where it leaves some out.
+
+    Attributes:
+        skipped: Time at the start of each run in which none begins [s].
+        longest_gap: Longest time without a position in one [s].
+    """
+
+    skipped: float
+    longest_gap: float
+
+    def contains(self, run: FreeRun) -> bool:
+        """Whether the README judges a free run."""
+        known = run.t[np.isfinite(run.channels["recorded"]["x_m"])]
+        gaps = np.diff(np.concatenate([run.t[:1], known, run.t[-1:]]))
+        return bool(gaps.max() <= self.longest_gap)
 
 
 def split_groups(groups: Mapping[str, Sequence[str]]) -> tuple[list[str], list[str]]:
@@ -91,6 +115,7 @@ def diagnose_set(
     vessel: str,
     windows: Sequence[float],
     out: Path,
+    source: SourceWindows | None = None,
 ) -> Figures:
     """Diagnose the fitted runs of a set and judge its models on the held-out runs.
 
@@ -103,6 +128,7 @@ def diagnose_set(
         vessel: Name or path of the nominal vessel.
         windows: Lengths of the free runs [s]; the first one is that of the diagnosis.
         out: Folder of the report.
+        source: Windows of the README, if it leaves some out; they have the first length.
     """
     start = time.process_time()
     diagnosis = pipeline.diagnose(
@@ -114,7 +140,12 @@ def diagnose_set(
     print(f"  report: {out / 'report.html'}", flush=True)
     mapped = map_runs(diagnosis, held_out, vessel)
     errors = {window: held_out_errors(diagnosis, mapped, window) for window in windows}
-    return Figures(title, diagnosis, errors, cpu_s)
+    by_source = None
+    if source:
+        fits = compared_fits(diagnosis.ranking)
+        runs = free_runs(diagnosis.problem, fits, mapped, windows[0], source.skipped)
+        by_source = rms_errors([run for run in runs if source.contains(run)])
+    return Figures(title, diagnosis, errors, cpu_s, by_source)
 
 
 def progress_printer() -> Report:
@@ -157,24 +188,27 @@ def print_figures(figures: Figures, units: Mapping[str, tuple[str, float]]) -> N
     """
     rows = []
     for window, families in figures.errors.items():
-        rows += error_rows(window, families, units)
+        rows += error_rows(f"{window:g} s", families, units)
+    if figures.by_source:
+        window = next(iter(figures.errors))
+        rows += error_rows(f"{window:g} s, windows of the README", figures.by_source, units)
     print_table(figures.title, HEADER, rows)
 
 
 def error_rows(
-    window: float,
+    window: str,
     families: Mapping[str, Mapping[str, float]],
     units: Mapping[str, tuple[str, float]],
 ) -> list[list[str]]:
     """Return one row of a table of errors for each family of signals.
 
     Args:
-        window: Length of the free runs [s].
+        window: Text of the free runs, with their length.
         families: Rms errors by family and model.
         units: Family of signals -> text of the figure with its unit, and factor from SI.
     """
     rows = []
     for family, (text, factor) in units.items():
         rms = [families[family][model] * factor for model in MODELS]
-        rows.append([f"{text}, {window:g} s", *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
+        rows.append([f"{text}, {window}", *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
     return rows

@@ -13,12 +13,12 @@ from pathlib import Path
 from boatsim.cli.importing import import_log
 from validation.real.common import OUT, RECORDINGS, out_option, runs_named, runs_of
 from validation.real.corrections import accept_corrections
-from validation.real.figures import Figures, diagnose_set, print_figures, split_groups
+from validation.real.figures import DISTANCE, Figures, diagnose_set, print_figures, split_groups
 from validation.real.gunnerus_vessel import NAME, write_vessel
 
 WINDOW = 60.0  # [s]
 UNITS = {
-    "position_rms_m": ("position [m]", 1.0),
+    "position_rms_m": ("distance [m]", DISTANCE),
     "heading_rms_rad": ("heading [deg]", 57.29578),
 }
 # one run was cut in two by hand

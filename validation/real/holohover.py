@@ -22,6 +22,7 @@ from boatsim.cli.importing import import_log
 from boatsim.physics.vessel import Vessel
 from validation.real.common import DEG, OUT, RECORDINGS, out_option, print_table, runs_of
 from validation.real.figures import (
+    DISTANCE,
     HEADER,
     Figures,
     diagnose_set,
@@ -47,7 +48,10 @@ FORMS = ("runs_clean", "runs")
 FITTED = ("old_oct", "blue", "blue_unshifted", "yellow_5")
 BUILDS = {"old": ("control_M0",), "5 March": ("pink",)}  # build -> held-out runs
 WINDOWS = (1.0, 0.2)  # [s]
-UNITS = {"position_rms_m": ("position, mm", 1000.0), "heading_rms_rad": ("heading, deg", DEG)}
+UNITS = {
+    "position_rms_m": ("distance, mm", 1000.0 * DISTANCE),
+    "heading_rms_rad": ("heading, deg", DEG),
+}
 # columns of the clean files that follow from the commands by the curve and the places of the fans
 DERIVED = ("thrust_", "steer_")
 # raw logs of a run, commands and poses, each with stamps of one clock
@@ -253,7 +257,7 @@ def print_build(figures: Figures, build: str, files: Sequence[Path], vessel: str
     rows = []
     for window in WINDOWS:
         families = held_out_errors(figures.diagnosis, mapped, window)
-        rows += error_rows(window, families, UNITS)
+        rows += error_rows(f"{window:g} s", families, UNITS)
     print_table(f"{figures.title}, build {build}", HEADER, rows)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording, read, write_csv
 from validation.real.common import DEG, OUT, RECORDINGS, out_option
-from validation.real.figures import diagnose_set, print_figures
+from validation.real.figures import DISTANCE, diagnose_set, print_figures
 
 NAME = "milliampere_ferry"
 RUNS = ("maneuvering1_a", "nlp1_a", "qp1_a")
@@ -28,7 +28,7 @@ FORMS = ("orders", "reported")
 VESSEL = Path(__file__).parent / "ferry" / "vessel.toml"
 WINDOWS = (20.0, 60.0)  # [s] of free runs
 FITTED_SHARE = 2.0 / 3.0  # of the time of each run, by the protocol
-UNITS = {"position_rms_m": ("position [m]", 1.0), "heading_rms_rad": ("heading [deg]", DEG)}
+UNITS = {"position_rms_m": ("distance [m]", DISTANCE), "heading_rms_rad": ("heading [deg]", DEG)}
 DRIVES = {1: "port_bow", 2: "starboard_bow", 3: "starboard_stern", 4: "port_stern"}
 POSE = ("x_m", "y_m", "psi_rad")
 RPM = 9.549297  # [rpm / (rad/s)]

@@ -40,10 +40,10 @@ class SimulateConfig:
         low=1.0,
     )
     effects: int = setting(
-        4,
+        6,
         "count",
         "Most effects that are added because simulations get better by them. Each costs about as "
-        "much as a fit of the vessel.",
+        "much as a fit of the vessel, and a rough model of a boat lacks some.",
     )
     effect_gain: float = setting(
         2.0,

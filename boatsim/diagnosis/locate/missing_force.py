@@ -142,11 +142,15 @@ def _missing_in_nominal(
     for j, parameter in enumerate(fit.free):
         part = running_average(parts[j], rows)
         mean += (fit.theta[j] - 1.0) * part
+        slopes[j] = part
         step = problem.config.locate.coefficient_step * parameter.sd
-        theta = fit.theta.copy()
-        theta[j] += step
-        changed = _mean_average(problem, fit, theta, mapped, levels)
-        slopes[j] = part + (changed - residual.mean) / step
+        for change in (step, -step):
+            theta = fit.theta.copy()
+            theta[j] += change
+            changed = _mean_average(problem, fit, theta, mapped, levels)
+            if np.isfinite(changed).all():  # else the model diverges with this coefficient
+                slopes[j] += (changed - residual.mean) / change
+                break
     variance = residual.variance + np.einsum("ita,ij,jta->ta", slopes, fit.covariance, slopes)
     return _with_disturbance(problem, mapped, mean, variance)
 

@@ -14,7 +14,8 @@ import numpy as np
 
 from boatsim.diagnosis.filter import FreeRunStarts, MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
-from boatsim.diagnosis.free_runs import FAMILIES, free_runs, rms_errors
+from boatsim.diagnosis.free_runs import FAMILIES, free_runs
+from boatsim.diagnosis.output_error.weights import run_errors
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.work import integration_count
 from boatsim.physics.base import Array
@@ -26,22 +27,25 @@ FAMILY_OF = {name: family for family, signals in FAMILIES.items() for name in si
 
 @dataclass(frozen=True)
 class OutputErrors:
-    """Errors of free runs over some recordings, in units of their rms with a reference model.
+    """Errors of free runs over some recordings, in units of those of a reference model.
 
     Each recorded signal of a run counts as a single observation, because its errors follow one
-    another smoothly.
+    another smoothly. A run in which the errors of the reference model are unusually large has less
+    weight.
 
     Attributes:
         problem: The estimation problem: vessel model, candidate effects and priors.
         recordings: Recordings over which the free runs lead.
         horizon: Length of each free run [s].
-        scale: Rms error of the reference model by family of signals (position, heading, ...).
+        scale: Error of the reference model by family of signals (position, heading, ...).
+        weights: (R,) weights of the runs, in the order of the recordings.
     """
 
     problem: Problem
     recordings: Sequence[MappedRecording]
     horizon: float
     scale: Mapping[str, float]
+    weights: Array
 
     def starts(self, found: Fit) -> list[FreeRunStarts]:
         """Return the states from which the free runs of a model begin, for each recording."""
@@ -61,11 +65,12 @@ class OutputErrors:
                 estimates, which takes most of the time.
         """
         on = self.problem.program.effect_switches(found.effects)
-        parts = []
+        parts, weights = list[Array](), iter(np.sqrt(self.weights))
         for mapped, begin in zip(self.recordings, starts or self.starts(found), strict=True):
             values = self.problem.parameter_vector(mapped, found.free, found.theta)
             for first, simulated in mapped.simulate_from(values, on, begin):
-                parts += self._of_run(mapped, first, simulated)
+                weight = next(weights)
+                parts += [weight * error for error in self._of_run(mapped, first, simulated)]
             self._count(mapped)
         return np.concatenate(parts) if parts else np.zeros(0)
 
@@ -76,7 +81,7 @@ class OutputErrors:
         self.problem.work_count.add_pass(integrations, 0, mapped.program.module.NQ, 0.0)
 
     def _of_run(self, mapped: MappedRecording, first: int, simulated: Array) -> list[Array]:
-        """Weighted errors of the recorded signals of one free run; 0 where nothing was recorded."""
+        """Scaled errors of the recorded signals of one free run; 0 where nothing was recorded."""
         found = []
         for c, (code, signal) in enumerate(zip(mapped.codes, mapped.signals, strict=True)):
             scale = self.scale.get(FAMILY_OF.get(signal, ""))
@@ -144,13 +149,13 @@ def output_errors(
 
     Args:
         problem: The estimation problem: vessel model, candidate effects and priors.
-        reference: Model whose rms errors are the units.
+        reference: Model whose errors are the units.
         recordings: Recordings over which the free runs lead.
         horizon: Length of each free run [s].
     """
-    found = rms_errors(free_runs(problem, {MODEL: reference}, recordings, horizon))
-    scale = {}
-    for family, rms in found.items():
-        if rms[MODEL] > 0.0 and np.isfinite(rms[MODEL]):
-            scale[family] = rms[MODEL]
-    return OutputErrors(problem, recordings, horizon, scale)
+    runs = free_runs(problem, {MODEL: reference}, recordings, horizon)
+    if not runs:
+        return OutputErrors(problem, recordings, horizon, {}, np.zeros(0))
+    found = run_errors(runs, MODEL)
+    scale = found.scale()
+    return OutputErrors(problem, recordings, horizon, scale, found.weights(scale))

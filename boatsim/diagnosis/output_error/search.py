@@ -17,6 +17,7 @@ from boatsim.diagnosis.fit import ParameterSpace, remove_effect
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs
 from boatsim.diagnosis.output_error.errors import OutputErrors, output_errors
 from boatsim.diagnosis.output_error.fit import OutputErrorFit, add_parameters, fit_to_free_runs
+from boatsim.diagnosis.output_error.weights import run_errors, typical_error_ratio
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
@@ -116,12 +117,27 @@ class OutputErrorSearch:
                 return
 
     def held_out_ratio(self, other: Fit) -> float:
-        """Return the ratio of rms errors on held-out recordings, geometric mean over the signals.
+        """Return the ratio of typical errors of free runs over held-out recordings.
 
         Args:
             other: Vessel that is compared with the best one so far.
         """
-        return error_ratio(self.problem, other, self.model, self.held_out, self.horizon)
+        both = {BEFORE: self.model, AFTER: other}
+        runs = free_runs(self.problem, both, self.held_out, self.horizon)
+        if not runs:
+            return 1.0
+        after, before = run_errors(runs, AFTER), run_errors(runs, BEFORE)
+        return typical_error_ratio(after, before, self.errors.scale)
+
+    def start_from(self, other: Fit) -> None:
+        """Fit from another start, which may lead to another maximum, and keep the better fit.
+
+        Args:
+            other: The same vessel with other parameters.
+        """
+        found = self._fitted(other)
+        if found.evidence > self.best.evidence:
+            self._accept(found)
 
     def _helps(self, other: Fit) -> bool:
         """Whether simulations of held-out recordings get better, and those of no group worse."""

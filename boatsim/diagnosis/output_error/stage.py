@@ -47,6 +47,7 @@ def fit_to_simulations(
     if not ranking.has_unexplained_force_or_cause or ranking.divergences:
         return ranking
     simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=budget)
+    simple.start_from(_with_coefficients_of_file(ranking.recalibrated))
     retuned = simple.model
     better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)
     stated = [
@@ -59,6 +60,7 @@ def fit_to_simulations(
     if kept:
         only_stated = _without_effects(problem, ranking.best, kept)
         simple = OutputErrorSearch(problem, only_stated, held_out, kept, budget)
+        simple.start_from(_with_coefficients_of_file(only_stated))
     corrected = _better_start(ranking, simple, kept, contradicted)
     corrected.add_effects(candidates)
     found = ranking
@@ -124,6 +126,15 @@ def _better_start(
     whole = OutputErrorSearch(problem, start, held_out, kept, simple.budget)
     whole.drop_effects()
     return simple if whole.held_out_ratio(simple.model) <= 1.0 else whole
+
+
+def _with_coefficients_of_file(found: Fit) -> Fit:
+    """A fit whose coefficients have the values of the vessel file."""
+    theta = found.theta.copy()
+    for i, parameter in enumerate(found.free):
+        if parameter.relative:
+            theta[i] = parameter.mean
+    return replace(found, theta=theta)
 
 
 def _without_effects(problem: Problem, best: Fit, kept: Sequence[str]) -> Fit:

@@ -24,6 +24,9 @@ MIN_EXTENT = 20.0
 # unit and delay have a larger correlation; the checks of a recording find them
 MAX_CORRELATION = 0.5
 MIN_DIFFERENCE = 0.7
+# An error of the heading turns a part of the speed ahead into one to starboard: a compass may be
+# off by 5 deg, and course and heading are not logged at the same instant
+HEADING_ERROR = 0.1  # [rad]
 MIN_RATE_CORRELATION = 0.7  # of a rate with the changes of the heading that show its unit
 SPEED_UNITS = ("kn", "kmh")
 MIN_UNIT_CORRELATION = 0.9  # of a speed with that of the track that shows its unit
@@ -239,6 +242,8 @@ def _speed_contradiction(
     size = float(np.sqrt(np.mean(expected**2)))
     difference = float(np.sqrt(np.mean((recorded - expected) ** 2)))
     if size == 0.0 or difference < MIN_DIFFERENCE * size:
+        return ""
+    if difference < HEADING_ERROR * float(np.sqrt(np.mean(track.speed**2))):
         return ""
     correlation = _correlation(recorded, expected)
     if abs(correlation) >= MAX_CORRELATION:

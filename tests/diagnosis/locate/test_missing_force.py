@@ -15,6 +15,7 @@ from scipy.stats import kstest
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.locate import missing_force as missing_force_module
 from boatsim.diagnosis.locate.missing_force import (
     missing_force,
     residual_force,
@@ -483,3 +484,26 @@ def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
         "time: it acts in 100 to 105 s of run_0" in told
         and "time: it acts in 135 to 140 s of run_0" in told
     )
+
+
+@pytest.mark.parametrize("diverging", ["above", "anywhere"])
+def test_a_model_that_diverges_with_a_changed_coefficient_has_a_band(
+    diverging: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, retuned = laid(sail("fitted", 1, lambda t, y, command: np.zeros(3))[0])
+    [whole] = missing_force(problem, retuned, problem.recordings)
+    mean_average = missing_force_module._mean_average
+
+    def diverges(problem: Problem, fit: Any, theta: Any, *rest: Any) -> Any:
+        found = mean_average(problem, fit, theta, *rest)
+        if diverging == "anywhere" or (theta > fit.theta).any():
+            return np.full_like(found, np.nan)
+        return found
+
+    monkeypatch.setattr(missing_force_module, "_mean_average", diverges)
+    [banded] = missing_force(problem, retuned, problem.recordings)
+    assert np.array_equal(banded.mean, whole.mean)
+    if diverging == "above":  # the derivative is taken to the other side
+        assert banded.sd == pytest.approx(whole.sd, rel=0.02)
+    else:
+        assert np.isfinite(banded.sd).all() and (banded.sd > 0.0).all()

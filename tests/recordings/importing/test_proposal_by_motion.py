@@ -221,3 +221,16 @@ def test_the_track_shows_the_unit_of_a_speed_without_one(unit, factor):
     half_wrong = 1.4 * (run["u"] + noise)  # neither m/s nor another unit
     columns = proposed(log_of(run, surge_velocity=half_wrong))[0]["columns"]
     assert columns["u_mps"] == "surge_velocity"
+
+
+def test_a_sideways_speed_is_kept_where_the_track_does_not_show_it():
+    """A heading that is off by 3 degrees hides the sideways speed of a boat that goes ahead."""
+    run = simulated()
+    rng = np.random.default_rng(4)
+    small = 0.02 * rng.normal(size=len(run["t"]))
+    kept = proposed(log_of(run, sway_velocity=small))[0]["columns"]
+    assert kept["v_mps"] == "sway_velocity"
+    large = 8.0 * rng.random(len(run["t"]))
+    table, text = proposed(log_of(run, sway_velocity=large))
+    assert "v_mps" not in table["columns"]
+    assert "v_mps is not sway_velocity: it differs from the derivative of the track" in text

@@ -1,0 +1,83 @@
+"""Laws of the weights of free runs by Student's t distribution."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boatsim.diagnosis.free_runs import FreeRun
+from boatsim.diagnosis.output_error.weights import RunErrors, run_errors, typical_error_ratio
+from boatsim.physics.base import Array
+
+FAMILY = "position_rms_m"
+NU = 4.0
+
+
+def errors_of(distances: Array) -> RunErrors:
+    """Errors of runs with two recorded coordinates."""
+    return RunErrors({FAMILY: distances**2}, {FAMILY: np.full(len(distances), 2.0)})
+
+
+def run(error: Array, recorded: Array) -> FreeRun:
+    channels = {"recorded": {"x_m": recorded}, "it": {"x_m": recorded + error}}
+    return FreeRun("a", 0.0, np.arange(float(len(error))), channels)
+
+
+@given(st.integers(0, 10**6), st.floats(1e-3, 1e3))
+def test_the_scale_is_that_of_maximum_likelihood_and_follows_the_unit(
+    seed: int, unit: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    distances = np.linalg.norm(rng.standard_t(NU, (60, 2)), axis=1)
+    scale = errors_of(distances).scale()[FAMILY]
+
+    def log_likelihood(s: float) -> float:
+        inner = np.log1p(distances**2 / (NU * s**2))
+        return float(-len(distances) * 2.0 * np.log(s) - 0.5 * (NU + 2.0) * np.sum(inner))
+
+    best = log_likelihood(scale)
+    assert best >= max(log_likelihood(0.98 * scale), log_likelihood(1.02 * scale))
+    assert errors_of(unit * distances).scale()[FAMILY] == pytest.approx(unit * scale, rel=1e-3)
+
+
+def test_single_runs_far_off_do_not_move_the_scale_and_lose_their_weight() -> None:
+    usual = np.linalg.norm(np.random.default_rng(1).standard_normal((40, 2)), axis=1)
+    alone = errors_of(usual).scale()[FAMILY]
+    for far in (20.0, 2000.0, np.inf):
+        errors = errors_of(np.append(usual, far))
+        scale = errors.scale()
+        assert scale[FAMILY] == pytest.approx(alone, rel=0.1)
+        weights = errors.weights(scale)
+        assert weights[-1] < 0.05 and np.median(weights[:-1]) > 0.7
+
+
+@given(st.lists(st.floats(1e-3, 1e3), min_size=3, max_size=12), st.floats(1.01, 10.0))
+def test_the_typical_ratio_is_one_for_equal_errors_and_falls_with_them(
+    sizes: list[float], factor: float
+) -> None:
+    distances = np.array(sizes)
+    before, after = errors_of(factor * distances), errors_of(distances)
+    scale = before.scale()
+    ratio = typical_error_ratio(after, before, scale)
+    assert 1.0 / factor <= ratio < 1.0
+    assert typical_error_ratio(before, after, scale) == pytest.approx(1.0 / ratio)
+    assert typical_error_ratio(before, before, scale) == 1.0
+
+
+def test_a_run_that_diverges_only_with_the_judged_model_is_an_infinite_ratio() -> None:
+    finite, diverging = errors_of(np.array([1.0, 1.0])), errors_of(np.array([1.0, np.inf]))
+    scale = finite.scale()
+    assert typical_error_ratio(diverging, finite, scale) == np.inf
+    assert typical_error_ratio(finite, diverging, scale) == 0.0
+    assert typical_error_ratio(diverging, diverging, scale) == 1.0
+
+
+def test_values_that_were_not_recorded_do_not_count_and_missing_simulations_diverge() -> None:
+    recorded = np.array([0.0, 1.0, np.nan, 3.0])
+    known = run(np.array([0.1, 0.1, 9.0, 0.1]), recorded)
+    diverging = run(np.array([0.1, np.nan, 0.1, 0.1]), recorded)
+    found = run_errors([known, diverging], "it")
+    assert found.squares[FAMILY][0] == pytest.approx(0.01)
+    assert found.squares[FAMILY][1] == np.inf
+    assert list(found.signals[FAMILY]) == [1.0, 1.0]
+    assert list(found.signals["heading_rms_rad"]) == [0.0, 0.0]
