@@ -85,7 +85,8 @@ def converted(runs: Sequence[Path], folder: Path = OUT / NAME / "raw") -> dict[s
 def window_errors(run: FreeRun) -> dict[str, float]:
     """Return the rms error of roll [rad] of each model in one window; empty if it does not move."""
     phi = run.channels["recorded"]["phi_rad"]
-    if not float(np.nanmax(phi) - np.nanmin(phi)) >= MOVES:
+    phi = phi[np.isfinite(phi)]
+    if not len(phi) or float(np.ptp(phi)) < MOVES:
         return {}
     errors = {}
     for model in MODELS:

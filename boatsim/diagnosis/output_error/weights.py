@@ -16,7 +16,7 @@ import numpy as np
 from boatsim.diagnosis.free_runs import FAMILIES, FreeRun
 from boatsim.physics.base import Array
 
-DEGREES_OF_FREEDOM = 4.0  # of the distribution, by Lange, Little and Taylor (1989), section 5
+DEGREES_OF_FREEDOM = 4.0  # of the distribution, as Lange, Little and Taylor recommend
 PASSES = 50  # of the estimate of the scale; it converges by a factor in each
 CONVERGED = 1e-6  # relative change of the scale
 
@@ -34,7 +34,7 @@ class RunErrors:
     squares: Mapping[str, Array]
     signals: Mapping[str, Array]
 
-    def distances(self, scale: Mapping[str, float]) -> Array:
+    def squared_distances(self, scale: Mapping[str, float]) -> Array:
         """Return the sum (R,) of the squared errors of each run, in units of a scale.
 
         Args:
@@ -53,8 +53,8 @@ class RunErrors:
             scale: Scale of the errors by family.
         """
         signals = sum(self.signals[family] for family in scale)
-        distances = self.distances(scale)
-        return np.asarray((DEGREES_OF_FREEDOM + signals) / (DEGREES_OF_FREEDOM + distances))
+        squares = self.squared_distances(scale)
+        return np.asarray((DEGREES_OF_FREEDOM + signals) / (DEGREES_OF_FREEDOM + squares))
 
     def scale(self) -> dict[str, float]:
         """Return the scale of the errors of one signal of each family, of maximum likelihood.
@@ -123,7 +123,7 @@ def typical_error_ratio(
         scale: Scale of the errors by family.
     """
     with np.errstate(invalid="ignore"):
-        after = np.log(DEGREES_OF_FREEDOM + found.distances(scale))
-        before = np.log(DEGREES_OF_FREEDOM + reference.distances(scale))
+        after = np.log(DEGREES_OF_FREEDOM + found.squared_distances(scale))
+        before = np.log(DEGREES_OF_FREEDOM + reference.squared_distances(scale))
         change = np.where(after == before, 0.0, after - before)  # both may diverge
     return float(np.exp(0.5 * np.mean(change)))
