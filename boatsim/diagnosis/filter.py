@@ -398,8 +398,8 @@ class MappedRecording:
     ) -> list[tuple[int, Array]]:
         """Simulate free runs: from states of the recording, with the recorded commands alone.
 
-        They start from the smoothed states, one after another from the first row; a
-        remainder shorter than the horizon is omitted.
+        They start from the smoothed states, one after another; a remainder shorter than the horizon
+        is omitted.
 
         Args:
             values: Parameter values of the vessel model for this recording.

@@ -43,7 +43,7 @@ class SimulateConfig:
         6,
         "count",
         "Most effects that are added because simulations get better by them. Each costs about as "
-        "much as a fit of the vessel, and a rough model of a boat lacks some.",
+        "much as a fit of the vessel; over long recordings `simulate.budget` ends the search.",
     )
     effect_gain: float = setting(
         2.0,

@@ -142,13 +142,13 @@ def _missing_in_nominal(
     for j, parameter in enumerate(fit.free):
         part = running_average(parts[j], rows)
         mean += (fit.theta[j] - 1.0) * part
-        slopes[j] = part
+        slopes[j] = part  # all that is known if the model diverges with either change below
         step = problem.config.locate.coefficient_step * parameter.sd
         for change in (step, -step):
             theta = fit.theta.copy()
             theta[j] += change
             changed = _mean_average(problem, fit, theta, mapped, levels)
-            if np.isfinite(changed).all():  # else the model diverges with this coefficient
+            if np.isfinite(changed).all():
                 slopes[j] += (changed - residual.mean) / change
                 break
     variance = residual.variance + np.einsum("ita,ij,jta->ta", slopes, fit.covariance, slopes)

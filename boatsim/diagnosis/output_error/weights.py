@@ -17,8 +17,8 @@ from boatsim.diagnosis.free_runs import FAMILIES, FreeRun
 from boatsim.physics.base import Array
 
 DEGREES_OF_FREEDOM = 4.0  # of the distribution, as Lange, Little and Taylor recommend
-PASSES = 50  # of the estimate of the scale; it converges by a factor in each
-CONVERGED = 1e-6  # relative change of the scale
+PASSES = 50  # most passes of the estimate of the scale
+CONVERGED = 1e-6  # relative change of the scale that ends them, far below its standard error
 
 
 @dataclass(frozen=True)
@@ -113,9 +113,9 @@ def typical_error_ratio(
 ) -> float:
     """Return the ratio of the typical errors of two models over the same free runs.
 
-    It is the geometric mean over the runs, with the scale of the errors added to both errors, so
-    that neither a few large errors nor tiny ones decide. Infinite if a simulation diverges that
-    does not with the reference.
+    It is the geometric mean over the runs. Twice the scale is added to both errors in quadrature,
+    as in Student's t distribution, so that neither a few large errors nor tiny ones decide. The
+    ratio is infinite if a simulation diverges that does not with the reference.
 
     Args:
         found: Errors of the model that is judged.
