@@ -29,6 +29,7 @@ FANS = {
     "c2": (-0.009, 0.045, np.pi / 6),
 }
 RATE, ROWS = 40.0, 900
+FULL = 0.7  # thrust of a fan at the largest command [N]
 WATER = {"current", "wave_forcing", "added_mass", "prop_walk", "cross_flow_drag", "planing_lag"}
 TESTED = (
     "yaw_inertia_error",
@@ -52,7 +53,7 @@ def craft(facts: dict[str, object]) -> Vessel:
         draught=0.01,
         body={"mass": MASS, "roll_inertia": 3e-4, "yaw_inertia": INERTIA},
         effects=effects,
-        channels={f"{fan}_N": {"low": 0.0, "high": 0.7} for fan in FANS},
+        channels={f"{fan}_N": {"low": 0.0, "high": FULL} for fan in FANS},
         diagnosis={"facts": facts},
     )
 
@@ -68,11 +69,12 @@ def floated(
     lags: Array | None = None,
     delays: Array | None = None,
     rates: Array | None = None,
+    powers: Array | None = None,
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
-    `lags` are time constants of the fans [s], `delays` their dead times in rows, and `rates` the
-    largest rates of their thrust [N/s].
+    `lags` are time constants of the fans [s], `delays` their dead times in rows, `rates` the
+    largest rates of their thrust [N/s], and `powers` the exponents of their curves.
     """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
@@ -83,6 +85,7 @@ def floated(
     for i, late in enumerate(np.zeros(len(FANS), int) if delays is None else delays):
         ordered[late:, i] = commands[: ROWS - late, i]
         ordered[:late, i] = commands[0, i]
+    ordered = FULL * (ordered / FULL) ** (np.ones(len(FANS)) if powers is None else powers)
     fastest = np.full(len(FANS), np.inf) if rates is None else rates
 
     def thrust_after(time: float, order: Array, begin: Array) -> Array:
@@ -131,7 +134,7 @@ def test_slope_and_yaw_inertia_are_candidates_only_without_water():
 
 def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
-    for effect in ("drive_lag", "drive_delay", "drive_rate_limit"):
+    for effect in ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent"):
         names |= {f"{effect}_{fan}_N" for fan in FANS}
     assert names <= set(candidate_library(CRAFT).tested_names)
     two = candidate_library(vessel.load_vessel("trial_boat"))
@@ -191,6 +194,11 @@ DYNAMICS = (
     *(f"drive_delay_{fan}_N" for fan in FANS),
     *(f"drive_rate_limit_{fan}_N" for fan in FANS),
 )
+CURVES = (
+    "thrust_exponent",
+    *(f"drive_gain_error_{fan}" for fan in FANS),
+    *(f"drive_exponent_{fan}_N" for fan in FANS),
+)
 FAN = np.arange(len(FANS)) == 2  # the third one, b1
 
 
@@ -210,3 +218,12 @@ def test_a_lag_a_dead_time_and_a_rate_limit_of_one_fan_are_found_with_the_fan(
     assert [one.name for one in ranking.named] == [name]
     value, sd = ranking.best.value(name, parameter)
     assert abs(value - true) < max(4.0 * sd, 0.1 * true)
+
+
+@pytest.mark.slow
+def test_the_exponent_of_one_fan_is_found_with_the_fan() -> None:
+    powers = np.where(FAN, 1.5, 1.0)
+    ranking = ranked(floated(1, powers=powers), floated(2, powers=powers), tested=CURVES)
+    assert [one.name for one in ranking.named] == ["drive_exponent_b1_N"]
+    value, sd = ranking.best.value("drive_exponent_b1_N", "exponent")
+    assert abs(value - 1.5) < max(4.0 * sd, 0.05)

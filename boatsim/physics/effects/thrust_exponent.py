@@ -5,7 +5,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param
+from boatsim.physics.base import (
+    Array,
+    Boat,
+    ChannelEffect,
+    SignalSegment,
+    param,
+    preset_effect,
+)
 from boatsim.physics.kinds.channel import COMMANDS
 from boatsim.physics.param import name_code_parameter
 
@@ -98,3 +105,22 @@ class ThrustExponent(ChannelEffect):
         """
         ahead, astern = self.largest_commands(vessel)
         return {"full_ahead": ahead, "full_astern": astern}
+
+
+DriveExponent = preset_effect(
+    ThrustExponent,
+    "DriveExponent",
+    words="the thrust of one drive is not proportional to its command",
+    words_above=(
+        "the thrust of one drive is not proportional to its command: half a command gives less "
+        "than half the thrust"
+    ),
+    shown_by="runs of this drive at several thrust levels between slow and full",
+    once_per="actuator",
+    frees={
+        "exponent": {
+            "words": "exponent n of the curve of this drive, beyond that of the vessel's file",
+            "spread": 0.4,
+        },
+    },
+)
