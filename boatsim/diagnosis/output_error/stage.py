@@ -117,7 +117,11 @@ def _better_start(
     kept: Sequence[str],
     contradicted: Sequence[str],
 ) -> OutputErrorSearch:
-    """The better start for further effects: all that the filter selected, or what is stated."""
+    """The better start for further effects: all that the filter selected, or what is stated.
+
+    What the filter selected is no start if simulations of a group of recordings get much worse by
+    it, because later steps are compared with the start.
+    """
     others = [name for name in ranking.best.effects if name not in contradicted]
     if set(others) == set(kept):
         return simple
@@ -125,7 +129,11 @@ def _better_start(
     start = _without_effects(problem, ranking.best, others)
     whole = OutputErrorSearch(problem, start, held_out, kept, simple.budget)
     whole.drop_effects()
-    return simple if whole.held_out_ratio(simple.model) <= 1.0 else whole
+    if whole.held_out_ratio(simple.model) <= 1.0 or generalization.harmed_groups(
+        problem, simple.model, whole.model, held_out, whole.horizon
+    ):
+        return simple
+    return whole
 
 
 def _with_coefficients_of_file(found: Fit) -> Fit:

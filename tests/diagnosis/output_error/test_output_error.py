@@ -14,6 +14,7 @@ from boatsim.diagnosis.output_error.errors import output_errors
 from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.output_error.search import OutputErrorSearch
 from boatsim.diagnosis.output_error.stage import (
+    _better_start,
     _with_corrected,
     contradicted_effects,
     fit_to_simulations,
@@ -164,6 +165,22 @@ def test_where_a_force_is_unexplained_the_corrected_vessel_predicts_no_worse() -
     assert found.by_free_runs and "weak_reverse" in found.added
     assert error(problem, found.best, held_out) * 1.05 < error(problem, ranking.best, held_out)
     assert set(found.best.effects) <= {*names, "weak_reverse"}
+
+
+@pytest.mark.parametrize("other_day", ["odd", "odd_and_weak_astern"])
+def test_a_start_that_harms_a_group_of_recordings_is_not_taken(other_day: str) -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = []
+    for seed, day in ((7, "first day"), (8, "first day"), (9, "first day"), (10, "other day")):
+        missing = odd_and_weak_astern if day == "first day" else globals()[other_day]
+        mapped = map_recording(sail(f"{day} {seed}", seed, missing)[0], problem.program)
+        held_out.append(replace(mapped, groups=(day,)))
+    effect = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN})
+    ranking = select_and_rank_candidates(problem, ("weak_reverse",), held_out)
+    ranking = replace(ranking, best=effect, named=())
+    simple = OutputErrorSearch(problem, retuned, held_out)
+    start = _better_start(ranking, simple, (), ()).model
+    assert ("weak_reverse" in start.effects) is (other_day == "odd_and_weak_astern")
 
 
 def test_nothing_is_added_once_the_budget_is_spent() -> None:
