@@ -28,7 +28,7 @@ from boatsim.simulate import cases, scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 ROUNDS = 5
 STEP = 0.02  # [s]

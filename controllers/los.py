@@ -1,9 +1,9 @@
 """Line-of-sight path following: LOS, integral LOS and adaptive LOS with a heading autopilot."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import atan2, exp, hypot, isfinite, nan, pi, sqrt
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -170,16 +170,17 @@ class Los(PlannedPath, ModelBasedController):
         """Return the commands of all thrusters for the next period.
 
         Args:
-            sense: Sensor readings; position and heading are needed.
+            sense: Sensor readings; position and heading are needed at the first step. Afterwards
+                the observer predicts missing ones.
             goal: `speed_mps`, the largest speed; without it the setting `speed`.
 
         Raises:
-            BadInput: There is no position fix or no model of the vessel.
+            BadInput: There is no position fix at the first step, or no model of the vessel.
         """
         if self._model is None:
             raise BadInput("los needs a model of its vessel; use_vessel_model gives it")
         measured = np.array([sense.x, sense.y, sense.psi])
-        if not np.isfinite(measured).all():
+        if not self._started and not np.isfinite(measured).all():
             raise BadInput(
                 "los needs position and heading; [sensors] position_sd = 0.1 (or ideal = true) "
                 "gives a position fix"
@@ -191,6 +192,7 @@ class Los(PlannedPath, ModelBasedController):
             self._wanted_speed = max(sense.u, 0.0) if isfinite(sense.u) else 0.0
         else:
             self._observer.step(measured, self._given)
+            sense = self._completed(sense)
             self._along = self._path.follow(sense.x, sense.y, self._along)
         self._there = self._path.point(self._along)
         u, v, r = self._velocity(sense)
@@ -198,6 +200,14 @@ class Los(PlannedPath, ModelBasedController):
         self._advance_speed(goal)
         self._control(sense.psi, u, r)
         return self._model.commands(self._allocator.setting)
+
+    def _completed(self, sense: Sense) -> Sense:
+        """Readings with the observer's position and heading where there are none."""
+        values: dict[str, Any] = {}
+        for name, estimate in zip(("x", "y", "psi"), self._observer.position, strict=True):
+            if not isfinite(getattr(sense, name)):
+                values[name] = float(estimate)
+        return replace(sense, **values) if values else sense
 
     def _velocity(self, sense: Sense) -> tuple[float, float, float]:
         """Measured velocity over ground, completed by that of the observer."""

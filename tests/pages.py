@@ -7,6 +7,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "docs" / "_ext"))
 
 import effect_cases as effect_cases  # noqa: E402
 import effect_examples as effect_examples  # noqa: E402
+import grade_table as grade_table  # noqa: E402
 import page_commands as page_commands  # noqa: E402
 import reference as reference  # noqa: E402
 import results_charts as results_charts  # noqa: E402

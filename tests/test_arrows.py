@@ -26,7 +26,10 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.motor_check control.operating_points control.passive_observer control.quadratic_program "
     "control.reference_motion control.thrust_allocation control.vessel_model control.dynamic_positioning "
     "control.guidance control.lag_joystick control.linear_model control.linear_quadratic control.paths "
-    "control.planned_path control.receding_horizon".split()
+    "control.planned_path control.receding_horizon "
+    # of trained policies: what they observe, computed from a motion
+    "learn.policy learn.hull learn.tasks.base learn.tasks.berth learn.tasks.follow_path learn.tasks.hold_station "
+    "learn.tasks.joystick".split()
 )
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "hull_assets", "engine", "env")}
@@ -35,8 +38,13 @@ HEAVY = {  # library -> the only modules that may import it
     "warp": {"warp.runtime"},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
-    "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
-    "stable_baselines3": {"learn.sb3"},
+    "gymnasium": {
+        f"learn.{name}" for name in ("registration", "single", "spaces", "train", "vector")
+    },
+    "stable_baselines3": {"learn.sb3", "learn.train"},
+    "torch": {"learn.train"},
+    "onnx": {"learn.policy_export"},
+    "onnxruntime": {"learn.policy"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
     "jinja2": {"view.html_page"},
     "ray": {"sweeps.workers.ray_cluster"},

@@ -754,7 +754,7 @@ def manoeuvre(
         str,
         typer.Argument(
             metavar="MANOEUVRE",
-            help="turning_circle, zigzag, pull_out, spiral, crash_stop or roll_decay.",
+            help="turning_circle, zigzag, pull_out, spiral, crash_stop, roll_decay or response.",
         ),
     ],
     vessel: Annotated[
@@ -774,17 +774,50 @@ def manoeuvre(
     speed: Annotated[
         float | None, typer.Option(min=1e-3, metavar="M/S", help="Approach speed.")
     ] = None,
+    directions: Annotated[
+        str | None,
+        typer.Option(metavar="DEG,DEG...", help="Response: waves relative to the bow, 0: astern."),
+    ] = None,
+    periods: Annotated[
+        str | None, typer.Option(metavar="S,S...", help="Response: periods of the waves.")
+    ] = None,
+    height: Annotated[
+        float | None,
+        typer.Option(min=1e-6, metavar="M", help="Response: height of the waves."),
+    ] = None,
+    waves: Annotated[
+        str | None,
+        typer.Option(
+            metavar="EFFECT[,KEY=V...]",
+            help="Response: effect by which waves act [default: the vessel's; strip_wave_loads].",
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", parser=_parse_folder, help="Output folder.")
     ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Run a standard manoeuvre; compare its figures with the limits of IMO MSC.137(76)."""
+    """Run a standard manoeuvre; compare its figures with the limits of IMO MSC.137(76).
+
+    `response` simulates regular waves of several periods and directions, prints the largest
+    response of each degree of freedom and writes response.csv and response.svg.
+    """
+    from boatsim.cli.responding import print_response
     from boatsim.cli.run_many import run_manoeuvre
     from boatsim.simulate.manoeuvre import manoeuvre_scenario
 
+    sea = {"directions": directions, "periods": periods, "height": height, "waves": waves}
+    helm = {"angle": angle, "heading": heading, "speed": speed}
+    response = name == "response"
+    for option, value in (helm if response else sea).items():
+        if value is not None:
+            raise BadInput(f"--{option} does not apply to {name}")
     with trusted_content(content, trust, [vessel]):
+        if response:
+            return print_response(
+                vessel, _split_loads(load), directions, periods, height, waves, out
+            )
         scenario = manoeuvre_scenario(name, vessel, _split_loads(load), angle, speed, heading)
         folder = out or Path("out") / f"{scenario.vessel.name}_{name}"
         settings = {"--angle": angle, "--heading": heading, "--speed": speed}

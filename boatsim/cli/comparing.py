@@ -214,6 +214,7 @@ def _load_recorded_boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
     from boatsim.recordings.table import read
     from boatsim.simulate import world
     from boatsim.simulate.controllers import load_with_controller
+    from boatsim.simulate.tank import Tank
     from boatsim.view import water
     from boatsim.view.rerun_log import Boat
     from boatsim.view.scene import scene_from_model
@@ -225,7 +226,7 @@ def _load_recorded_boats(runs: Sequence[FinishedRun]) -> "list[Boat]":
         scenario = load_with_controller(run.scenario, run.controller)
         vessel = scenario.vessel
         if scenario.file.tank:
-            tank = world.Tank(**scenario.file.tank.model_dump())
+            tank = Tank(**scenario.file.tank.model_dump())
             scene = scene_from_model(world.build_model(vessel, tank), vessel, tank)
         else:
             scene = water.comparison_scene(vessel, {"all": logs})

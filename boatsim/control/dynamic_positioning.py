@@ -155,18 +155,20 @@ class DynamicPositioning(ModelBasedController):
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the commands of all thrusters for the next period.
 
+        In an outage of position or heading the observer predicts them.
+
         Args:
-            sense: Sensor readings; position and heading are needed.
+            sense: Sensor readings; position and heading are needed at the first step.
             goal: `x_m`, `y_m` and `psi_rad`, by default those at the start, and `speed_mps`, the
                 largest speed to them.
 
         Raises:
-            BadInput: There is no position fix or no model of the vessel.
+            BadInput: There is no position fix at the first step, or no model of the vessel.
         """
         if self._model is None:
             raise BadInput(f"{self._name} needs a model of its vessel; use_vessel_model gives it")
         measured = np.array([sense.x, sense.y, sense.psi])
-        if not np.isfinite(measured).all():
+        if not self._started and not np.isfinite(measured).all():
             raise BadInput(
                 f"{self._name} needs position and heading; [sensors] position_sd = 0.1 (or ideal = "
                 "true) gives a position fix"

@@ -7,7 +7,7 @@ T. I. Fossen, J. P. Strand, Passive nonlinear observer design for ships using Ly
 full-scale experiments with a supply vessel, Automatica 35, 1999.
 """
 
-from math import ceil, cos, pi, sin
+from math import ceil, cos, isnan, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -56,15 +56,21 @@ def observer_rates(
     Args:
         state: Wave states (6,), position x, y [m] and heading [rad] without waves (3,), bias force
             in earth axes (3,) and velocity u, v [m/s], r [rad/s] (3,).
-        measured: Measured x, y [m] and heading [rad] (3,).
+        measured: Measured x, y [m] and heading [rad] (3,); nan where there is no measurement, and
+            the model alone predicts.
         force: Force and moment of thrusters and wind in body axes (3,).
         design: Numbers of the model and gains.
     """
     rates = np.zeros(15)
     gains = design.gains
-    error = measured - state[6:9] - state[3:6]
+    estimate = state[6:9] + state[3:6]
+    error = measured - estimate
     error[2] = (error[2] + pi) % (2.0 * pi) - pi
-    c, s = cos(measured[2]), sin(measured[2])
+    for i in range(3):
+        if isnan(measured[i]):
+            error[i] = 0.0
+    heading = estimate[2] if isnan(measured[2]) else measured[2]
+    c, s = cos(heading), sin(heading)
     u, v, r = state[12], state[13], state[14]
     for i in range(3):
         w = design.frequency

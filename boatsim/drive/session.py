@@ -17,6 +17,7 @@ from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_options import LIVE_REFRESH, REFRESH, Listener
 from boatsim.simulate.scenario import OFF, Scenario
+from boatsim.simulate.tank import Tank
 from boatsim.simulate.tracking_errors import TrackingErrorSums
 from boatsim.view.scene import Scene, scene_from_model
 
@@ -204,7 +205,7 @@ def scene_of(scenario: Scenario) -> Scene:
     file, vessel = scenario.file, scenario.vessel
     tank = world.open_water(vessel)
     if file.tank and not file.is_compiled:
-        tank = world.Tank(**file.tank.model_dump())
+        tank = Tank(**file.tank.model_dump())
     return scene_from_model(world.build_model(vessel, tank, file.step), vessel, tank)
 
 

@@ -1,7 +1,8 @@
 """Prints actions and observations of the registered environments: python -m boatsim.learn."""
 
 from boatsim.learn import registration
-from boatsim.learn.environment_options import TASKS, make_simulation
+from boatsim.learn.environment_options import make_simulation
+from boatsim.learn.tasks.names import TASKS
 
 
 def main() -> None:

@@ -5,18 +5,10 @@ from typing import TypedDict, Unpack
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.learn.play import MakeWorld, TaskSimulation, make_batch_world
-from boatsim.learn.tasks.base import Task
-from boatsim.learn.tasks.berth import Berth
-from boatsim.learn.tasks.follow_path import FollowPath
-from boatsim.learn.tasks.hold_station import HoldStation
-from boatsim.learn.tasks.joystick import Joystick
+from boatsim.learn.tasks.names import TASKS
 from boatsim.learn.variation import Variation, Vary, make_variation
 from boatsim.simulate import scenario as scenarios
-from boatsim.simulate.world import Tank
-
-TASKS: Mapping[str, type[Task]] = {
-    task.task_name(): task for task in (Berth, HoldStation, FollowPath, Joystick)
-}
+from boatsim.simulate.tank import Tank
 
 
 class EnvironmentOptions(TypedDict, total=False):

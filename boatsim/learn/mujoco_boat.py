@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 
 class TankWorld:

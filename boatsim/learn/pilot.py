@@ -27,14 +27,14 @@ class Pilot(Protocol):
 
 
 def run_episodes(
-    play: TaskSimulation, seeds: Seeds, make_pilot: Callable[[], Pilot]
+    play: TaskSimulation, seeds: Seeds, make_pilot: Callable[[Array], Pilot]
 ) -> dict[str, Array]:
     """Run one episode of a learning task for each boat, steered by a controller.
 
     Args:
         play: The simulation of n boats.
         seeds: Seeds (n,) of the episodes.
-        make_pilot: Creates the controller of a boat.
+        make_pilot: Creates the controller of a boat from the goal (`goals`,) of its episode.
 
     Returns:
         Metrics (n,) of the episodes by name.
@@ -43,7 +43,7 @@ def run_episodes(
         BadInput: A controller sends a command that the vessel does not have.
     """
     play.begin_episodes(seeds, np.arange(play.n))
-    pilots = [make_pilot() for _ in range(play.n)]
+    pilots = [make_pilot(goal) for goal in play.goals]
     commands = play.commands.copy()
     metrics: dict[str, Array] = {}
     running = np.ones(play.n, dtype=bool)

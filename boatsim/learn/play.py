@@ -14,13 +14,14 @@ from boatsim.errors import BadInput
 from boatsim.learn import episode_random
 from boatsim.learn.actions import Controls, make_controls
 from boatsim.learn.backends import Boats, World
-from boatsim.learn.hull import Hulls, Motion, planar_state_indices, task_scale
+from boatsim.learn.hull import Hulls, Motion
+from boatsim.learn.task_scale import planar_state_indices, task_scale
 from boatsim.learn.tasks.base import Signal, Task
 from boatsim.learn.variation import Variation
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 Flags = NDArray[np.bool_]
 Observations = NDArray[np.float32]
@@ -183,6 +184,11 @@ class TaskSimulation:
 
     def _observe(self) -> None:
         self._observed = self.task.observe(self.motion, self.t, self._goal, self._hulls, self.scale)
+
+    @property
+    def goals(self) -> Array:
+        """Goals (n, `goals`) of the present episodes; see `Task`."""
+        return self._goal
 
     @property
     def t(self) -> Array:

@@ -33,6 +33,8 @@ PACKAGES = {
 # Class statement or preset of an effect
 EFFECT_CLASS = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset_effect\())([A-Z]\w*)", re.MULTILINE)
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
+# Ending of the file of a trained policy, and the controller that runs it
+POLICY, POLICY_CONTROLLER = ".onnx", "learned_policy"
 # Folders of a user's own content
 USER_FOLDERS = {
     **KINDS,
@@ -128,7 +130,7 @@ def full_scenario_name(kind: str, name: str) -> str:
 def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> Path:
     """Return the path of the file that defines a vessel, a controller or a scenario.
 
-    It is a vessel.toml, a controller's .py or a scenario's .toml.
+    It is a vessel.toml, a controller's .py, the .onnx of a trained policy or a scenario's .toml.
 
     Args:
         kind: "vessel", "controller" or "scenario".
@@ -144,19 +146,19 @@ def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> 
     for search in (_by_path, _in_library, _in_user_content, _in_working_directory):
         if (found := search(kind, name, base_folder)) is not None:
             return found
-    if name.endswith((".py", ".toml")):
+    if name.endswith((".py", POLICY, ".toml")):
         raise BadInput(f"{name}: no such file")
     raise BadInput(unknown_name_message(kind, name, all_content_names(kind)))
 
 
 def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
     """The file of a path, or of a controller's name in the folder of the naming file."""
-    suffix = ".py" if kind == "controller" else ".toml"
+    suffixes = (".py", POLICY) if kind == "controller" else (".toml",)
     path = (base_folder or Path()) / name
-    if path.suffix == suffix and path.is_file():
+    if path.suffix in suffixes and path.is_file():
         return path.resolve()
     if base_folder and kind == "controller" and name not in shipped_content_names(kind):
-        controller = base_folder / f"{name}{suffix}"
+        controller = base_folder / f"{name}.py"
         if controller.is_file():
             return controller.resolve()
     if kind == "vessel" and "/" in name and (path / "vessel.toml").is_file():
@@ -291,7 +293,7 @@ def load_class(
 
     Args:
         kind: "effect", "measure", "sensor" or "controller".
-        name: Name, or path of a .py file.
+        name: Name, path of a .py file, or of a trained policy, which is data and needs no trust.
         base_folder: Folder of the file that names the class; relative paths start there.
         named: Whether the user gives the name directly; then a Python file outside trusted folders
             may run if the name is its path, and not one in the folders of the user's content.
@@ -306,6 +308,9 @@ def load_class(
             path = find_content_file("controller", name, base_folder)
         else:
             path = _user_file(kind, name, base_folder)
+        if path.suffix == POLICY:
+            policy: type[Any] = load_class("controller", POLICY_CONTROLLER).from_file(path)
+            return policy
         if path.parent == content_root() / KINDS["controller"]:
             module = import_module_file(path, f"boatsim.controllers.{path.stem}")
         else:

@@ -59,7 +59,11 @@ class ControlLoop:
         self.scenario = scenario
         self.engine = engine
         self.goal_at = goal_at
-        self._imu, *self._sensor_generators = generators
+        self._imu, *others = generators
+        self._instruments = [
+            sensor.start(rng)
+            for sensor, rng in zip(scenario.additional_sensors, others, strict=True)
+        ]
         self._on_interval = on_interval
         vessel = scenario.vessel
         #: channels that the controller sets, and their places among the vessel's commands
@@ -177,9 +181,7 @@ class ControlLoop:
             self._imu,
             (state.phi, state.p),
         )
-        self.sense: Sense = add_further_readings(
-            usual, self.scenario.additional_sensors, self.engine, self._sensor_generators
-        )
+        self.sense: Sense = add_further_readings(usual, self._instruments, self.engine)
         goal = self.goal_at(state.t)
         with self.name_controller_in_errors() as controller:
             if goal.get(OFF):

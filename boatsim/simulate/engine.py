@@ -19,7 +19,7 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import native_callback, world
 from boatsim.simulate.stepper import State, Stepper
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 # From version 4 on a Runge-Kutta step of MuJoCo leaves the mean acceleration over the step, before
 # that of its last stage, at the end of the step

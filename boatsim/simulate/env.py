@@ -23,7 +23,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.engine import Engine, State, installed_callback
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 if find_spec("dm_control") is None:
     raise ImportError(

@@ -12,7 +12,8 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.stepper import Stepper
-from boatsim.simulate.world import Model, Tank
+from boatsim.simulate.tank import Tank
+from boatsim.simulate.world import Model
 
 
 class OpenWater(Stepper):

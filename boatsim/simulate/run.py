@@ -18,7 +18,7 @@ from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_log import RunLog
 from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 CHUNK = 500  # [rows] that are delivered to a listener at once, before `RunOptions.refresh` is over
 PROGRESS = 100  # [steps] between two reports of progress

@@ -60,7 +60,9 @@ class RunLog:
         self._axes = [i for i, axis in enumerate(AXES) if axis in vessel.dof]
         self._readings: dict[str, str] = {}  # reading of a further sensor -> its column
         for sensor in self.scenario.additional_sensors:
-            self._readings |= type(sensor).columns
+            for reading, column in type(sensor).columns.items():
+                if column not in SENSED:  # logged already
+                    self._readings[reading] = column
         self._measured = {name: channel.neutral for name, channel in vessel.measured.items()}
         # goals that are commands are already in the columns `sent_`
         self._goals = [key for key in self.scenario.goal_keys if key not in vessel.commands]

@@ -3,6 +3,7 @@
 Further sensors are files of `boatsim/simulate/sensors/`.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -129,12 +130,21 @@ class Sensors(CheckedParameters):
 class Sensor(CheckedParameters):
     """Base class of sensors that a scenario adds, as by `[[sensor]]` with `use = "inclinometer"`.
 
-    A reading with the name of a field of `Sense` fills that field; others are in `sense.more`.
+    A reading with the name of a field of `Sense` fills that field; others are in `sense.more`. A
+    sensor whose readings depend on earlier ones overrides `start` instead of `read`.
     """
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     # reading -> its column in the log after `sensed_`, with the unit
     columns: ClassVar[Mapping[str, str]] = {}
+
+    def start(self, rng: np.random.Generator) -> "Instrument":
+        """Return the sensor as it is at the start of a run.
+
+        Args:
+            rng: Random generator of its errors.
+        """
+        return MemorylessInstrument(self, rng)
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """Return one measurement of this sensor: the values of all readings in `columns`.
@@ -146,21 +156,51 @@ class Sensor(CheckedParameters):
         raise NotImplementedError
 
 
-def add_further_readings(
-    base: Sense, sensors: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]
-) -> Sense:
+class Instrument(ABC):
+    """A sensor in a run, with what it remembers; read once in each control period."""
+
+    @abstractmethod
+    def read(self, engine: Stepper) -> Mapping[str, float]:
+        """Return one measurement: the values of all readings in `columns` of its sensor.
+
+        Args:
+            engine: The engine, whose vessel is measured.
+        """
+
+
+class MemorylessInstrument(Instrument):
+    """A sensor whose readings depend on the present motion alone."""
+
+    def __init__(self, sensor: Sensor, rng: np.random.Generator) -> None:
+        """Put a sensor into a run.
+
+        Args:
+            sensor: The sensor.
+            rng: Random generator of its noise.
+        """
+        self._sensor, self._rng = sensor, rng
+
+    def read(self, engine: Stepper) -> Mapping[str, float]:
+        """Return one measurement of the present motion.
+
+        Args:
+            engine: The engine, whose vessel is measured.
+        """
+        return self._sensor.read(engine, self._rng)
+
+
+def add_further_readings(base: Sense, instruments: Sequence[Instrument], engine: Stepper) -> Sense:
     """Add the readings of a scenario's additional sensors to those of the standard sensors.
 
     Args:
         base: Sample of the standard sensors.
-        sensors: The additional sensors.
+        instruments: The additional sensors.
         engine: The engine, whose vessel is measured.
-        rngs: Random generator of each additional sensor.
     """
-    if not sensors:
+    if not instruments:
         return base
     usual = {f.name for f in fields(Sense)} - {"more"}
     read: dict[str, float] = {}
-    for sensor, rng in zip(sensors, rngs, strict=True):
-        read |= sensor.read(engine, rng)
+    for instrument in instruments:
+        read |= instrument.read(engine)
     return replace(base, **{n: x for n, x in read.items() if n in usual}, more=read)

@@ -4,7 +4,6 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 from warnings import catch_warnings, filterwarnings
@@ -18,9 +17,9 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.hull_assets import check_assets
 from boatsim.simulate.hull_xml_check import check_hull_file, check_hull_text
+from boatsim.simulate.tank import Tank
 
 Model: TypeAlias = mujoco.MjModel  # for modules that must not import mujoco
-SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
@@ -38,28 +37,6 @@ JOINTS = {
     "roll": ("phi", mujoco.mjtJoint.mjJNT_HINGE, (1, 0, 0)),
 }
 HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
-
-
-@dataclass(frozen=True)
-class Tank:
-    """Rectangular water in which a vessel is simulated and drawn, in start axes, SNAME.
-
-    `length` is along x, `width` along y.
-    """
-
-    length: float  # [m]
-    width: float  # [m]
-    depth: float = 1.0  # [m]
-    walls: bool = True
-    centre: tuple[float, float] = (0.0, 0.0)  # [m]
-
-    def __post_init__(self) -> None:
-        for name in ("length", "width", "depth"):
-            value = getattr(self, name)
-            if not SMALLEST <= value <= LARGEST:
-                raise BadInput(
-                    f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m"
-                )
 
 
 def open_water(vessel: Vessel) -> Tank:

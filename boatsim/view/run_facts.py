@@ -62,7 +62,7 @@ def plain_name(name: str) -> str:
     path, colon, case = name.rpartition(":")
     if colon and path.endswith(".toml"):
         return case
-    if name.endswith((".py", ".toml")):
+    if name.endswith((".py", ".onnx", ".toml")):
         return Path(name.replace("\\", "/")).stem
     return name
 

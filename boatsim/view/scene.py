@@ -17,7 +17,8 @@ from boatsim.physics.particulars import GRAVITY
 
 if TYPE_CHECKING:
     from boatsim.physics.vessel import Vessel
-    from boatsim.simulate.world import Model, Tank
+    from boatsim.simulate.tank import Tank
+from boatsim.simulate.world import Model
 
 Triangles = NDArray[np.uint32]
 DRAWN_GROUPS = (0, 1, 2)  # geom groups that MuJoCo's viewers draw; contact shapes are in group 3

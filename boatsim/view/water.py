@@ -9,6 +9,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 from boatsim.simulate import world
+from boatsim.simulate.tank import Tank
 from boatsim.view.scene import Scene, scene_from_model
 
 SMALLEST = 0.08  # length of a drawn vessel at least, as a share of the size of all paths
@@ -37,7 +38,7 @@ def comparison_scene(vessel: Vessel, runs: Mapping[str, Sequence[Recording]]) ->
     margin = 2.0 * MARGIN * times * vessel.length
     length, width = x_high - x_low + margin, y_high - y_low + margin
     far = BEYOND * max(length, width)
-    tank = world.Tank(far, far, vessel.draught * 2, walls=False, centre=centre)
+    tank = Tank(far, far, vessel.draught * 2, walls=False, centre=centre)
     scene = scene_from_model(world.build_model(vessel, tank), vessel, tank).enlarge_vessels(times)
     return replace(scene, tank=(length, width, *centre))
 

@@ -1,6 +1,6 @@
 """Dynamic positioning holds a vessel, and its parts do what the page says."""
 
-from math import hypot, pi
+from math import hypot, inf, nan, pi
 
 import numpy as np
 import pytest
@@ -25,12 +25,22 @@ def controller(**settings: object) -> ModelBasedController:
     return made
 
 
-def hold(made: ModelBasedController, load: np.ndarray, seconds: float) -> np.ndarray:
-    """Errors (n, 3) of the linear vessel model under a constant load in body axes, heading zero."""
+def hold(
+    made: ModelBasedController,
+    load: np.ndarray,
+    seconds: float,
+    outage: tuple[float, float] = (inf, inf),
+) -> np.ndarray:
+    """Errors (n, 3) of the linear vessel model under a constant load in body axes, heading zero.
+
+    There is no position fix from the begin to the end of an outage [s].
+    """
     place, velocity, rows = np.zeros(3), np.zeros(3), []
     inverse = np.linalg.inv(OSV.mass)
     for k in range(round(seconds / made.period)):
-        sense = Sense(k * made.period, place[2], velocity[2], 0, 0, 0, 0, place[0], place[1])
+        t = k * made.period
+        fix = [nan, nan] if outage[0] <= t < outage[1] else place[:2]
+        sense = Sense(t, place[2], velocity[2], 0, 0, 0, 0, fix[0], fix[1])
         sent = made.step(sense, {"x_m": 0.0, "y_m": 0.0, "psi_rad": 0.0})
         thrust = np.array([sent[drive.thrust] for drive in OSV.drives])
         angle = np.array([sent.get(drive.angle, 0.0) for drive in OSV.drives])
@@ -54,6 +64,13 @@ def test_a_constant_wind_leaves_no_mean_error() -> None:
     without = hold(controller(**settings, integral=False), load, 300.0)
     stiffness = OSV.mass[0, 0] * 0.15**2
     assert without[-1, 0] == pytest.approx(load[0] / stiffness, rel=0.1)
+
+
+def test_in_an_outage_of_the_position_the_vessel_is_held_by_the_model() -> None:
+    load = np.array([-6e4, 1e5, 0.0])
+    settings = {"wave_frequency": 0.785, "natural_frequency": 0.15, "period": 1.0}
+    errors = hold(controller(**settings), load, 460.0, outage=(400.0, 430.0))
+    assert np.abs(errors[400:, :2]).max() < 0.5  # without thrust the load moves it by 8 m
 
 
 def test_the_reference_reaches_its_goal_within_its_limits() -> None:

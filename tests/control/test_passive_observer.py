@@ -57,3 +57,16 @@ def test_a_heading_that_passes_a_full_turn_does_not_jump() -> None:
         wrapped = (heading + pi) % (2.0 * pi) - pi
         observer.step(np.array([0.0, 0.0, wrapped]), np.zeros(3))
         assert abs(observer.position[2] - heading) < 0.5
+
+
+def test_without_measurement_the_observer_moves_as_its_model_does() -> None:
+    observer = PassiveObserver(MASS, DAMPING, WAVES, PERIOD, filters=False)
+    observer.reset(np.zeros(3))
+    force, outage = np.array([2e5, 0.0, 0.0]), np.full(3, np.nan)
+    for _ in range(1000):
+        observer.step(outage, force)
+    mass, drag, t = MASS[0, 0], DAMPING[0, 0], 1000 * PERIOD
+    speed = force[0] / drag * (1.0 - np.exp(-drag * t / mass))
+    place = force[0] / drag * t - mass / drag * speed
+    assert observer.velocity[0] == pytest.approx(speed, rel=1e-6)
+    assert observer.position == pytest.approx([place, 0.0, 0.0], rel=1e-6)

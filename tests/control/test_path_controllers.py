@@ -1,6 +1,6 @@
 """Controllers that follow a path: settings, and closed loops on the linear vessel model."""
 
-from math import cos, nan, pi, sin
+from math import cos, inf, nan, pi, sin
 
 import numpy as np
 import pytest
@@ -31,13 +31,16 @@ def sail(
     model: VesselModel,
     seconds: float,
     start: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    outage: tuple[float, float] = (inf, inf),
 ) -> np.ndarray:
     """Rows of pose and velocity (n, 6) of the linear vessel model under a controller."""
     place, velocity, rows = np.array(start), np.zeros(3), []
     inverse = np.linalg.inv(model.mass)
     for k in range(round(seconds / made.period)):
         u, v, r = velocity
-        sense = Sense(k * made.period, place[2], r, 0, 0, u, v, place[0], place[1])
+        t = k * made.period
+        fix = [nan, nan] if outage[0] <= t < outage[1] else place[:2]
+        sense = Sense(t, place[2], r, 0, 0, u, v, fix[0], fix[1])
         sent = made.step(sense, {})
         force = np.zeros(3)
         for one, drive in zip(model.thrusters, model.drives, strict=True):
@@ -74,6 +77,12 @@ def test_los_stops_at_the_end_of_its_path_with_its_course() -> None:
     assert rows[-1, :2] == pytest.approx([40.0, 10.0], abs=0.3)
     assert rows[-1, 2] == pytest.approx(0.5, abs=0.03)
     assert np.abs(rows[-1, 3:]).max() < 0.02 and not made.done
+
+
+def test_los_goes_on_in_an_outage_of_the_position() -> None:
+    made = controller("los", OTTER, waypoints=[[0.0, 0.0], [60.0, 0.0]], speed=1.0)
+    rows = sail(made, OTTER, 50.0, (0.0, 1.0, 0.0), outage=(30.0, 40.0))
+    assert np.abs(rows[300:, 1]).max() < 0.5 and rows[-1, 3] == pytest.approx(1.0, abs=0.1)
 
 
 def test_los_needs_no_velocity_sensor() -> None:

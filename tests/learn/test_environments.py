@@ -196,7 +196,7 @@ def test_a_joystick_controller_with_its_outer_loop_berths_in_calm_water() -> Non
             return dict(self.inner.step(sense, goal))
 
     sea = game("berth", 8, period=0.08, step=0.04, duration=90.0)
-    norms = run_episodes(sea, np.arange(8, dtype=np.uint64), Berthing)
+    norms = run_episodes(sea, np.arange(8, dtype=np.uint64), lambda goal: Berthing())
     assert (
         norms["is_success"].all()
         and (norms["distance_L"] < 0.1).all()

@@ -14,7 +14,7 @@ from boatsim.cli import app
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import world
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 from boatsim.view.scene import Scene, scene_from_model
 
 HULLS = {  # geoms of the hull's body

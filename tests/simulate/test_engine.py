@@ -24,7 +24,7 @@ from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State, installed_callback
 from boatsim.simulate.run import run
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 EXTRA: dict[str, dict[str, float]] = {
     "weak_reverse": {"astern_factor": 0.694},

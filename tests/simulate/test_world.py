@@ -17,7 +17,7 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics import hullform, vessel
 from boatsim.physics.content import content_root
 from boatsim.simulate import world
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 MODELS = content_root() / "models"
 VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
@@ -409,8 +409,8 @@ except Exception as error:
     sys.exit(77)
 import mujoco
 from boatsim.physics import vessel
-from boatsim.simulate import world
-model = world.build_model(vessel.load_vessel("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
+from boatsim.simulate import tank, world
+model = world.build_model(vessel.load_vessel("joystick_boat"), tank.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}
 with mujoco.Renderer(model, 240, 320) as renderer:

@@ -236,8 +236,9 @@ def test_without_a_file_and_a_viewer_there_is_nothing_to_do():
 def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
     from boatsim.physics import vessel
     from boatsim.simulate import world
+    from boatsim.simulate.tank import Tank
 
-    boat, tank = vessel.load_vessel("trial_boat"), world.Tank(length=8.0, width=6.0)
+    boat, tank = vessel.load_vessel("trial_boat"), Tank(length=8.0, width=6.0)
     scene = scene_from_model(world.build_model(boat, tank), boat, tank)
     hull = np.concatenate([solid.vertices for solid in scene.solids if solid.part == "hull"])
     assert np.ptp(hull[:, 0]) == pytest.approx(boat.length, rel=0.1)

@@ -15,7 +15,7 @@ from boatsim.learn.hull import Hulls, Motion, Scale
 from boatsim.physics.content import snake_case
 from boatsim.physics.param import CheckedParameters
 from boatsim.physics.signals import Array
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 Flags = NDArray[np.bool_]
 

@@ -10,7 +10,7 @@ from boatsim.learn.hull import Hulls, Motion, Scale
 from boatsim.learn.tasks.base import Outcome, Signal, Task, wrap_angle
 from boatsim.physics.base import param
 from boatsim.physics.signals import Array
-from boatsim.simulate.world import Tank
+from boatsim.simulate.tank import Tank
 
 # Columns of the memory: remaining distance and heading error [L], and time at the berth [s].
 POTENTIAL, HELD = range(2)

@@ -1,5 +1,6 @@
 """Follow a winding path at a steady speed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
@@ -103,12 +104,26 @@ class FollowPath(Task):
     ) -> tuple[Array, ...]:
         """Compute the observations, then the speed along the path [m/s]; see `Task`."""
         y, course = self._path(m.x, goal)
-        turn = m.psi - course  # heading of the boat relative to the path
-        c = np.cos(turn)
-        s = np.sin(turn)
         aside = (m.y - y) * np.cos(course)
         _, course_1 = self._path(m.x + 1.0 * scale.length, goal)
         _, course_2 = self._path(m.x + 2.0 * scale.length, goal)
+        return self.observe_path(m, aside, (course, course_1, course_2))
+
+    def observe_path(self, m: Motion, aside: Array, courses: Sequence[Array]) -> tuple[Array, ...]:
+        """Compute the observations from the distances and courses of any path.
+
+        Args:
+            m: True motion.
+            aside: Distances (n,) of the boats to starboard of the path [m].
+            courses: Courses (n,) of the path here, one and two lengths ahead [rad].
+
+        Returns:
+            The observations, then the speed along the path [m/s].
+        """
+        course, course_1, course_2 = courses
+        turn = m.psi - course  # heading of the boat relative to the path
+        c = np.cos(turn)
+        s = np.sin(turn)
         ahead = (wrap_angle(course_1 - m.psi), wrap_angle(course_2 - m.psi))
         along = m.u * c - m.v * s
         return (aside, aside, -s, c, *ahead, m.u, m.v, m.r, along)

@@ -1,0 +1,111 @@
+"""Response operators: against a solution in the frequency domain, in the limit of long waves, and
+their files."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from boatsim.cli import app
+from boatsim.errors import BadInput
+from boatsim.physics.base import AXES
+from boatsim.physics.vessel import load_vessel
+from boatsim.simulate.wave_response import usual_periods, wave_response
+from validation.waves.boats import linear_response
+from validation.waves.response import SPRINGS, FloatingCatamaran
+
+OTTER = {"use": "strip_wave_loads", "hull_spacing": 0.79, "hull_beam": 0.25}
+
+
+def test_responses_are_those_of_the_frequency_domain(tmp_path: Path) -> None:
+    catamaran = FloatingCatamaran()
+    boat = catamaran.vessel(tmp_path / "catamaran", AXES).without_effect("ground_spring")
+    stiffness = catamaran.stiffness.copy()
+    for axis, spring in SPRINGS.items():  # those of the validation; here they are much softer
+        stiffness[AXES.index(axis), AXES.index(axis)] -= spring
+    periods, directions = [1.2, 2.0, 3.0], [0.5 * np.pi, 0.75 * np.pi]
+    found = wave_response(boat, directions, periods, 0.002)
+    assert found.steady.all() and found.dof == AXES
+    frequency = 2.0 * np.pi / np.array(periods)
+    expected = np.array(
+        [
+            linear_response(
+                catamaran.coefficients, catamaran.body, stiffness, AXES, frequency, direction
+            )
+            for direction in directions
+        ]
+    )
+    largest = np.abs(expected).max(axis=(0, 1))
+    # the springs change surge, sway and yaw by 0.25 %
+    errors = np.abs(found.operators - expected).max(axis=(0, 1)) / largest
+    assert errors.max() < 0.01
+
+
+def test_a_boat_follows_the_surface_of_long_waves() -> None:
+    boat, period = load_vessel("otter"), 12.0
+    found = wave_response(boat, [0.0, 0.5 * np.pi], [period], 0.02, OTTER)
+    number = (2.0 * np.pi / period) ** 2 / 9.81
+    astern, port = np.abs(found.operators[:, 0])
+    axis = AXES.index
+    assert astern[axis("heave")] == pytest.approx(1.0, abs=0.01)
+    assert astern[axis("pitch")] == pytest.approx(number, rel=0.03)  # the slope of the surface
+    assert port[axis("roll")] == pytest.approx(number, rel=0.05)
+    assert astern[axis("roll")] < 1e-6 > astern[axis("sway")]  # mirror image
+    # a crest lifts the boat; z is down
+    assert np.exp(1j * np.angle(found.operators[0, 0, axis("heave")])) == pytest.approx(
+        -1.0, abs=0.02
+    )
+
+
+def test_usual_periods_belong_to_waves_of_half_to_ten_lengths() -> None:
+    periods = usual_periods(2.0, 5)
+    lengths = 9.81 * periods**2 / (2.0 * np.pi)
+    assert lengths[[0, -1]] == pytest.approx([1.0, 20.0])
+    assert np.ptp(lengths[1:] / lengths[:-1]) < 1e-12
+
+
+def test_waves_that_exert_no_force_are_refused() -> None:
+    with pytest.raises(BadInput, match="exert no force"):
+        wave_response(load_vessel("otter"), [0.0], [2.0], 0.0, OTTER)
+
+
+def invoked(*words: str) -> tuple[int, str]:
+    """Exit code and output of `boatsim manoeuvre`."""
+    done = CliRunner().invoke(app, ["manoeuvre", *words], catch_exceptions=False)
+    return done.exit_code, " ".join(done.output.split())
+
+
+def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
+    words = ["response", "--vessel", "otter", "--directions", "0,90", "--periods", "2,3"]
+    words += ["--waves", "strip_wave_loads,hull_spacing=0.79,hull_beam=0.25"]
+    code, printed = invoked(*words, "--out", str(tmp_path / "out"))
+    assert code == 0 and "regular waves of 0.02 m" in printed
+    rows = list(csv.DictReader((tmp_path / "out" / "response.csv").open()))
+    assert len(rows) == 4 and {row["period_s"] for row in rows} == {"2", "3"}
+    heave = [float(row["heave_m_per_m"]) for row in rows if row["direction_rad"] == "0"]
+    assert 0.5 < heave[0] < heave[1] < 1.0
+    figure = (tmp_path / "out" / "response.svg").read_text(encoding="utf-8")
+    assert figure.startswith("<svg") and "pitch [rad/m]" in figure and "(from port)" in figure
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--periods", "2,x"], "--periods 2,x: allowed are numbers"),
+        (["--periods=-1"], "allowed are times above 0"),
+        (["--waves", "strip_wave_loads,4"], "'4' is no parameter"),
+        (["--waves", "strip_wave_lods"], "did you mean 'strip_wave_loads'"),
+        (["--speed", "2"], "--speed does not apply to response"),
+    ],
+)
+def test_bad_input_is_one_line(options: list[str], message: str, tmp_path: Path) -> None:
+    out = ["--out", str(tmp_path / "out")]
+    code, printed = invoked("response", "--vessel", "otter", *out, *options)
+    assert code == 2 and message in printed and not (tmp_path / "out").exists()
+
+
+def test_options_of_a_response_do_not_apply_to_other_manoeuvres() -> None:
+    code, printed = invoked("zigzag", "--vessel", "otter", "--periods", "2")
+    assert code == 2 and "--periods does not apply to zigzag" in printed
