@@ -154,7 +154,7 @@ def compare_gymnasium_boat() -> Pair:
     """Return the pair for a motor boat of Gymnasium.
 
     It takes one Euler step per control step; boatsim runs through dm_env with four Runge-Kutta
-    steps.
+    steps. It is timed for as many control steps, and for as many physics steps.
     """
     import gym_sailing  # type: ignore[import-not-found] # noqa: F401
     import gymnasium
@@ -170,13 +170,18 @@ def compare_gymnasium_boat() -> Pair:
         for _ in range(steps):
             env.step(action)
 
-    def ours() -> None:
+    def ours(count: int) -> None:
         own.reset()
-        for _ in range(steps):
+        for _ in range(count):
             if own.step(held).last():
                 own.reset()
 
-    return Pair(f"gym-sailing, motor boat, {steps} control steps", theirs, {"dm_env": ours})
+    per_control = round(own.control_timestep() / own.physics.timestep())
+    works: dict[str, Work] = {
+        "dm_env": lambda: ours(steps),
+        "dm_env, equal physics steps": lambda: ours(steps // per_control),
+    }
+    return Pair(f"gym-sailing, motor boat, {steps} control steps", theirs, works)
 
 
 def boatsim_runs(

@@ -29,6 +29,7 @@ from boatsim.physics.signals import Array
 from boatsim.simulate.vessel_model import introduce_vessel
 from boatsim.sweeps.robustness.survival import wilson_interval
 
+NEUTRAL = "neutral commands"
 UNSEEN = 1_000_000  # first seed of the comparison; those of the training begin at 0
 MAIN_FIGURES = {  # metric, unit and decimals of the main figure of each task; smaller is better
     "berth": ("time_s", "s", 1),
@@ -169,6 +170,15 @@ def classical_pilots(play: TaskSimulation) -> dict[str, tuple[float, MakePilot]]
     return {f"`{rival}`": (0.08, stick(rival)) for rival in rivals}
 
 
+def neutral_commands(goal: Array) -> Pilot:
+    """Return a pilot that leaves all commands neutral: what a success is worth.
+
+    Args:
+        goal: Not used.
+    """
+    return ControllerPilot(load_class("controller", "open_loop")(), lambda t: {})
+
+
 def policy_metrics(policy: Policy, play: TaskSimulation, seeds: episode_random.Seeds) -> Metrics:
     """Return the metrics (n,) of one episode of each boat, steered by a policy.
 
@@ -227,7 +237,8 @@ def compare(path: Path, draws: int, seed: int) -> None:
     )
     play = make_simulation(n=draws, **{**options, "period": policy.description.period})
     found = {"policy": policy_metrics(policy, play, seeds)}
-    for controller, (period, make) in classical_pilots(play).items():
+    pilots = {**classical_pilots(play), NEUTRAL: (0.2, neutral_commands)}
+    for controller, (period, make) in pilots.items():
         other = make_simulation(n=draws, **{**options, "period": period, "step": period / 2.0})
         found[controller] = run_episodes(other, seeds, make)
     print(f"\n{name}: {draws} boats that were not used in the training\n")
@@ -250,7 +261,7 @@ def print_task(task: str, found: Mapping[str, Metrics]) -> None:
         middle, slow = np.quantile(values, (0.5, 0.9), method="lower")
         share = success[name].mean()
         print(f"| {name} | {share:.1%} | {middle:.{decimals}f} | {slow:.{decimals}f} |")
-    rivals = [name for name in found if name != "policy"]
+    rivals = [name for name in found if name not in ("policy", NEUTRAL)]
     best = min(rivals, key=lambda name: (-success[name].mean(), np.median(figures[name])))
     smaller = figures["policy"] < figures[best]
     low, high = wilson_interval(float(smaller.mean()), len(smaller))

@@ -2,16 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import cos, isnan, sin
+from math import cos, isnan, nan, sin
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
 from boatsim.control import paths
-from boatsim.control.base import Controller, Sense, wrap
+from boatsim.control.base import Controller, Estimate, Sense, wrap
 from boatsim.control.planned_path import PlannedPath
-from boatsim.errors import BadInput, unknown_name_message
+from boatsim.errors import BadInput
 from boatsim.learn.hull import Motion
 from boatsim.learn.policy import Policy, load_policy
 from boatsim.learn.tasks.berth import Berth
@@ -30,7 +30,10 @@ TASK_GOALS: Mapping[type, tuple[str, ...]] = {
     FollowPath: (),
 }
 # Readings that the observations need; a scenario without one of the sensors gives nan
-NEEDED = ("x", "y", "psi", "u", "v", "r")
+VELOCITY = ("u", "v", "r")
+NEEDED: Mapping[type, tuple[str, ...]] = {
+    task: VELOCITY if task is Joystick else ("x", "y", "psi", *VELOCITY) for task in TASK_GOALS
+}
 
 
 @dataclass
@@ -45,6 +48,7 @@ class LearnedPolicy(PlannedPath, Controller):
 
     words: ClassVar[str] = 'policy of reinforcement learning; use = its file, "policy.onnx"'
     goals: ClassVar[tuple[str, ...]] = (*POSE, *STICK)
+    use_ending: ClassVar[str] = ".onnx"
     policy_file: ClassVar[Path | None] = None
 
     period: float = param(
@@ -105,6 +109,7 @@ class LearnedPolicy(PlannedPath, Controller):
         self._last = np.zeros(count)
         self._start = None
         self._along = 0.0
+        self._sent: dict[str, float] = {}
 
     def channels(self) -> tuple[str, ...]:
         """Return the command channels that the policy sets."""
@@ -113,14 +118,25 @@ class LearnedPolicy(PlannedPath, Controller):
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the commands of the policy for the next period.
 
+        In an outage of a sensor the last commands stay.
+
         Args:
             sense: Sensor readings, with position, heading and velocity.
             goal: Goals of the task of the policy.
 
         Raises:
-            BadInput: A reading is missing, or a goal belongs to another task.
+            BadInput: A reading is missing at the first step, or a goal belongs to another task.
         """
-        self._check(sense, goal)
+        self._check_goals(goal)
+        needed = NEEDED[type(self._policy.task)]
+        missing = [name for name in needed if isnan(getattr(sense, name))]
+        if missing and self._start is not None:
+            return self._sent
+        if missing:
+            raise BadInput(
+                f"no sensor measures {', '.join(missing)}, which the policy observes; [sensors] "
+                "with ideal = true measures all, [[sensor]] gnss and dvl position and velocity"
+            )
         if self._start is None:
             self._start = (sense.x, sense.y, sense.psi)
         observed = self._observed(sense, goal)
@@ -128,20 +144,31 @@ class LearnedPolicy(PlannedPath, Controller):
         row = np.clip([*observed, *self._last], -limits, limits)
         self._last = self._policy.act(row[None].astype(np.float32))[0]
         commands = self._policy.controls.commands(self._last[None])[0]
-        return dict(zip(self.channels(), commands.tolist(), strict=True))
+        self._sent = dict(zip(self.channels(), commands.tolist(), strict=True))
+        return self._sent
 
-    def _check(self, sense: Sense, goal: Mapping[str, float]) -> None:
-        missing = [name for name in NEEDED if isnan(getattr(sense, name))]
-        if missing:
-            raise BadInput(
-                f"no sensor measures {', '.join(missing)}, which the policy observes; allowed are "
-                "[sensors] ideal = true, or position_sd and speed_sd with [[sensor]] drift_log"
-            )
+    def estimates(self) -> dict[str, Estimate]:
+        """Return the foot point on the path, for the log of a run."""
+        if self._path is None:
+            return {}
+        here = self._path.point(self._along)
+        values = {
+            "reference_x_m": here.x,
+            "reference_y_m": here.y,
+            "reference_course_rad": here.course,
+        }
+        return {name: Estimate(value, nan, nan) for name, value in values.items()}
+
+    def _check_goals(self, goal: Mapping[str, float]) -> None:
+        """Check that no goal belongs to another task."""
         allowed = TASK_GOALS[type(self._policy.task)]
         for name in goal:
             if name in type(self).goals and name not in allowed:
-                task = self._policy.description.task
-                raise BadInput(unknown_name_message(f"goal of {task}", name, allowed))
+                takes = ", ".join(allowed) or "waypoints of [controller]"
+                raise BadInput(
+                    f"goal {name} does not apply to a policy for "
+                    f"{self._policy.description.task}, which takes {takes}"
+                )
 
     def _observed(self, sense: Sense, goal: Mapping[str, float]) -> Sequence[float]:
         """Observations of the task in their units, without the last actions."""

@@ -62,6 +62,7 @@ def class_description(kind: str, name: str) -> Entry:
         params = cls.params()
     if params:
         defaults = {field.name: field.default for field in fields(cls)}
+    ending = getattr(cls, "use_ending", "")
     doc = (getdoc(cls) or "").splitlines()
     if doc and doc[0].rstrip(".") == cls.words:
         doc = []
@@ -71,7 +72,7 @@ def class_description(kind: str, name: str) -> Entry:
         tuple(doc),
         tuple(_class_facts(cls)),
         tuple(_parameter_rows(cls, params, defaults)),
-        tuple(_example_lines(TABLES[kind], own_name, cls, params, defaults)),
+        tuple(_example_lines(TABLES[kind], own_name + ending, cls, params, defaults)),
     )
 
 
@@ -88,6 +89,8 @@ def _class_facts(cls: type[Any]) -> Iterator[tuple[str, str]]:
         yield "metrics", ", ".join(metrics)
     if goals := getattr(cls, "goals", ()):
         yield "goals", ", ".join(goals)
+    if grades := getattr(cls, "grades", None):
+        yield "grade", ", ".join(grades())
 
 
 def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from boatsim.errors import escape_for_terminal
+from boatsim.view.run_facts import plain_name
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -27,7 +28,7 @@ def print_metrics(run: "RunEntry", folder: Path) -> None:
 
     from boatsim.view.run_sentence import explain_name_endings
 
-    words = f"{run['scenario']}, {run['controller']}, seed {run['seed']}"
+    words = f"{run['scenario']}, {plain_name(run['controller'])}, seed {run['seed']}"
     if not run["complete"]:
         words += ", interrupted"
     title = Text(escape_for_terminal(words))

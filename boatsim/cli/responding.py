@@ -24,7 +24,10 @@ from boatsim.view.response_plot import response_plot
 CSV, SVG = "response.csv", "response.svg"
 DIRECTIONS = (0.0, 45.0, 90.0, 135.0, 180.0)  # [deg]
 PERIODS = 16  # number of usual periods
+LARGEST_ANGLE = (-360.0, 360.0)  # [deg] of a direction
+WAVE_PERIODS = (0.2, 40.0)  # [s] of the modal period of a sea
 HEIGHT_SHARE = 0.01  # of the length: so low that the response is linear
+NOTHING = 1e-9  # [m/m, rad/m] rounding errors
 TURNING = ("roll", "pitch", "yaw")
 
 
@@ -55,27 +58,28 @@ def print_response(
         BadInput: An argument is wrong, or the waves exert no force on the vessel.
     """
     boat = load_vessel(vessel, loads)
-    angles = DIRECTIONS if directions is None else _numbers("--directions", directions)
-    usual = tuple(usual_periods(boat.length, PERIODS).tolist())
-    times = usual if periods is None else _numbers("--periods", periods)
-    if min(times) <= 0.0:
-        raise BadInput(f"--periods {periods}: allowed are times above 0 s")
+    angles: tuple[float, ...] = DIRECTIONS
+    if directions is not None:
+        angles = _numbers("--directions", directions, LARGEST_ANGLE, "deg")
+    times = tuple(usual_periods(boat.length, PERIODS).tolist())
+    if periods is not None:
+        times = _numbers("--periods", periods, WAVE_PERIODS, "s")
     high = HEIGHT_SHARE * boat.length if height is None else height
     table = None if waves is None else parse_waves(waves)
-    with show_task_progress() as progress:
-        found = wave_response(
-            boat,
-            [radians(angle) for angle in angles],
-            sorted(times),
-            high,
-            table,
-            lambda share: progress("simulating regular waves", share, ""),
-        )
-    _print_largest(found)
     folder = out or Path("out") / f"{boat.name}_response"
     with atomic_folder(folder) as new:
+        with show_task_progress() as progress:
+            found = wave_response(
+                boat,
+                [radians(angle) for angle in angles],
+                sorted(set(times)),
+                high,
+                table,
+                lambda share: progress("simulating regular waves", share, ""),
+            )
         _write_csv(found, new / CSV)
         (new / SVG).write_text(_plot(found, boat.length), encoding="utf-8")
+    _print_largest(found)
     print_lines([f"written to {folder}: {SVG}, {CSV}"])
     return Exit.MET
 
@@ -102,14 +106,18 @@ def parse_waves(text: str) -> dict[str, object]:
     return table
 
 
-def _numbers(option: str, text: str) -> tuple[float, ...]:
-    """Numbers of an option, separated by commas."""
+def _numbers(option: str, text: str, limits: tuple[float, float], unit: str) -> tuple[float, ...]:
+    """Numbers of an option within limits, separated by commas."""
     try:
         values = tuple(float(part) for part in text.split(","))
     except ValueError:
         values = ()
-    if not values or not np.isfinite(values).all():
-        raise BadInput(f"{option} {text}: allowed are numbers, separated by commas")
+    low, high = limits
+    if not values or not all(low <= value <= high for value in values):
+        raise BadInput(
+            f"{option} {text}: allowed are numbers from {low:g} to {high:g} {unit}, separated by "
+            "commas"
+        )
     return values
 
 
@@ -121,19 +129,26 @@ def _unit(axis: str) -> str:
 def _print_largest(found: WaveResponse) -> None:
     """Print the largest response of each degree of freedom."""
     rows = []
-    for axis, size, period, direction in largest_responses(found):
-        rows.append(
-            [f"{axis} [{_unit(axis)}]", f"{size:.3g}", f"{period:.2f}", f"{degrees(direction):.0f}"]
-        )
+    if found.steady.any():
+        for axis, size, period, direction in largest_responses(found):
+            row = ["0", "", ""]  # rounding errors of an axis that does not move
+            if size > NOTHING:
+                row = [f"{size:.3g}", f"{period:.2f}", f"{degrees(direction):.0f}"]
+            rows.append([f"{axis} [{_unit(axis)}]", *row])
     head = ["freedom", "largest response", "period [s]", "waves run to [deg]"]
     print_text_table(f"{found.vessel} in regular waves of {found.height:g} m", head, rows, 1)
     lines = [
         "Motion per amplitude of the waves at zero speed, held by soft springs; waves run to the "
         "given direction relative to the bow: 0 deg from astern, 180 deg from ahead."
     ]
-    unsteady = int((~found.steady).sum())
-    if unsteady:
-        lines.append(f"{unsteady} of {found.steady.size} responses did not become steady (nan)")
+    unsteady = ~found.steady
+    if unsteady.any():
+        late = np.broadcast_to(found.periods, unsteady.shape)[unsteady]
+        lines.append(
+            f"{unsteady.sum()} of {unsteady.size} responses did not become steady and are not "
+            f"shown, at periods from {late.min():.3g} to {late.max():.3g} s: motion that is hardly "
+            "damped, or a drift of the vessel in the waves"
+        )
     print_lines(lines)
 
 
@@ -149,14 +164,9 @@ def _write_csv(found: WaveResponse, path: Path) -> None:
         for i, direction in enumerate(found.directions.tolist()):
             for k, period in enumerate(found.periods.tolist()):
                 row = [f"{direction:.6g}", f"{period:.6g}", f"{2.0 * pi / period:.6g}"]
-                for value in _shown(found)[i, k]:
+                for value in found.operators[i, k]:
                     row += [f"{abs(value):.6g}", f"{np.angle(value):.6g}"]
                 writer.writerow(row)
-
-
-def _shown(found: WaveResponse) -> np.ndarray[tuple[int, ...], np.dtype[np.complex128]]:
-    """Responses, nan where they are not steady."""
-    return np.where(found.steady[..., None], found.operators, np.nan)
 
 
 def _plot(found: WaveResponse, length: float) -> str:
@@ -168,5 +178,5 @@ def _plot(found: WaveResponse, length: float) -> str:
         "wavelength over length of the vessel",
         wave_lengths,
         found.directions,
-        np.abs(_shown(found)),
+        np.abs(found.operators),
     )

@@ -53,6 +53,8 @@ class Controller(CheckedParameters):
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
     # keys a [[goal]] may have; empty: the vessel's command channels
     goals: ClassVar[tuple[str, ...]] = ()
+    # ending of the file that `use` names; empty: `use` is the name of the controller
+    use_ending: ClassVar[str] = ""
     passes_on: ClassVar[bool] = False  # its goals are the commands; sensors are not used
     tuned: ClassVar[tuple[str, ...]] = ()  # parameters that `boatsim tune` changes by default
 

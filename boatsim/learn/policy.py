@@ -8,12 +8,13 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, NonNegativeFloat
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, validate_table
@@ -66,8 +67,8 @@ class PolicyDescription(Table):
     channels: list[str]
     pattern: list[list[float]]
     neutral: list[float]
-    up: list[float]
-    down: list[float]
+    up: list[NonNegativeFloat]
+    down: list[NonNegativeFloat]
 
 
 @dataclass(frozen=True)
@@ -116,8 +117,13 @@ class Policy:
 
         Args:
             observations: Observations (n, S) in their units.
+
+        Raises:
+            BadInput: An action is nan.
         """
         (actions,) = self.session.run([OUTPUT], {INPUT: observations})
+        if not np.isfinite(actions).all():
+            raise BadInput("the network of the policy gives nan")
         return np.asarray(actions, dtype=float)
 
 
@@ -170,8 +176,9 @@ def _read_description(text: str, label: str) -> PolicyDescription:
 
 
 def _first_line(error: Exception) -> str:
-    """First line of an error message."""
-    return next(iter(str(error).splitlines()), type(error).__name__)
+    """First line of an error message, without the codes that onnxruntime writes before it."""
+    line = next(iter(str(error).splitlines()), type(error).__name__)
+    return line.rpartition(" : ")[2]
 
 
 def _described_task(description: PolicyDescription) -> Task:
@@ -190,8 +197,9 @@ def _check_network(policy: Policy) -> None:
     given = policy.description
     expected = [signal.name for signal in policy.task.signals(policy.scale)]
     expected += [f"last_{name}" for name in given.actions]
-    if given.observations != expected:
-        raise BadInput(f"observations {given.observations}; {given.task} has {expected}")
+    for name, own in zip_longest(given.observations, expected, fillvalue="none"):
+        if name != own:
+            raise BadInput(f"observation {name!r}; {given.task} has {own!r} in its place")
     sizes = {
         "bounds": (len(given.bounds), len(given.observations)),
         "pattern": (len(given.pattern), len(given.actions)),
@@ -205,7 +213,9 @@ def _check_network(policy: Policy) -> None:
         ((OUTPUT, given.actions), policy.session.get_outputs()),
     ):
         shapes = {tensor.name: tensor.shape for tensor in tensors}
-        width = shapes.get(places, [None, None])[-1]
+        if places not in shapes:
+            raise BadInput(f"the network has {', '.join(shapes)}; it needs {places}")
+        width = shapes[places][-1]
         sizes[f"network's {places}"] = (width, len(expected_names))
     for name, (found, wanted) in sizes.items():
         if found != wanted:

@@ -38,6 +38,11 @@ class GradedSensor(Sensor):
     grade: str = ""  # of sensor_grades.toml
 
     @classmethod
+    def grades(cls) -> Mapping[str, Mapping[str, Value]]:
+        """Return the values of the parameters that each grade of the sensor sets, by its name."""
+        return sensor_grades()[snake_case(cls.__name__)]
+
+    @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:
         """Return a sensor with the values of its grade and the settings of a file, checked.
 
@@ -47,7 +52,7 @@ class GradedSensor(Sensor):
         Raises:
             BadInput: The grade or a setting does not exist, or a value is not allowed.
         """
-        grades = sensor_grades()[snake_case(cls.__name__)]
+        grades = cls.grades()
         grade = settings.get("grade") or "consumer"
         if not isinstance(grade, str) or grade not in grades:
             raise BadInput(unknown_name_message(f"{cls.__name__}: grade", str(grade), grades))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, Array
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.vessel import Vessel
 from boatsim.physics.vessel.effect_tables import effect_table
 from boatsim.physics.vessel.wave_field import wave_field
@@ -26,6 +27,8 @@ MOST_FITS = 40
 # Frequency of the springs that hold place and heading, as a share of that of the waves: they change
 # the response by its square, 0.25 %
 SPRING_SHARE = 0.05
+# What regular waves state themselves, of the parameters of a sea
+STATED = ("spectrum", "significant_height", "modal_period", "toward", "spreading", "gamma", "cut")
 SPRINGS = {"surge": "stiffness_north", "sway": "stiffness_east", "yaw": "turn"}
 COLUMNS = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
 
@@ -45,7 +48,7 @@ class WaveResponse:
         periods: Periods of the waves (P,) [s].
         height: Height of the waves [m].
         operators: Complex motion (H, P, D) per amplitude of the wave at the mean place, in m/m and
-            rad/m.
+            rad/m; nan where it did not become steady.
         steady: Whether each response became steady (H, P).
     """
 
@@ -94,6 +97,8 @@ def wave_response(
             "significant_height": height,
             "modal_period": periods[k],
             "toward": directions[i],
+            "spreading": 0.0,
+            "random_amplitudes": 0.0,
         }
         floating = _on_springs(own.with_effect(sea), 2.0 * pi / periods[k])
         if not wave_axes(floating):
@@ -136,7 +141,29 @@ def _without_waves(
             vessel = vessel.without_effect(effect.name)
     if waves is not None:
         table = dict(waves)
+        check_waves(table)
     return vessel, table
+
+
+def check_waves(table: Mapping[str, object]) -> None:
+    """Check that a table describes an effect by which waves act, without the waves themselves.
+
+    Args:
+        table: The table.
+
+    Raises:
+        BadInput: There is no such effect of waves, or it states the waves.
+    """
+    use = str(table["use"])
+    if not issubclass(load_class("effect", use), SeaParameters):
+        known = []
+        for name in shipped_content_names("effect"):
+            if issubclass(load_class("effect", name), SeaParameters):
+                known.append(name)
+        raise BadInput(f"{use} is no effect of waves; allowed are {', '.join(known)}")
+    for key in STATED:
+        if key in table:
+            raise BadInput(f"{use}: {key} does not apply to the regular waves of a response")
 
 
 def _on_springs(vessel: Vessel, frequency: float) -> Vessel:
@@ -171,7 +198,7 @@ def _response(vessel: Vessel, period: float) -> tuple[Complex, bool]:
         if np.abs(found - before).max() <= STEADY * scale:
             return found, True
         before = found
-    return before, False
+    return np.full(len(names), np.nan + 0j), False
 
 
 def _harmonics(t: Array, signals: Array, frequency: float) -> Complex:
@@ -202,12 +229,12 @@ def largest_responses(found: WaveResponse) -> Iterable[tuple[str, float, float, 
     """Yield for each degree of freedom its largest response, and where it is.
 
     Args:
-        found: The response.
+        found: The response, of which one at least is steady.
 
     Yields:
         Degree of freedom, amplitude per amplitude of the wave, period [s] and direction [rad].
     """
-    sizes = np.abs(found.operators)
+    sizes = np.where(found.steady[..., None], np.abs(found.operators), -np.inf)
     for d, axis in enumerate(found.dof):
         i, k = np.unravel_index(int(sizes[..., d].argmax()), sizes.shape[:2])
         yield axis, float(sizes[i, k, d]), float(found.periods[k]), float(found.directions[i])

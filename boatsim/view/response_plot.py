@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from html import escape
-from math import degrees
+from math import degrees, isfinite
 
 import numpy as np
 
@@ -55,6 +55,18 @@ def response_plot(
     return "\n".join([*parts, "</svg>\n"])
 
 
+def axis_limits(x: Array) -> tuple[float, float]:
+    """Return the limits of an axis, with room around a single value.
+
+    Args:
+        x: Values (P,).
+    """
+    low, high = float(x.min()), float(x.max())
+    if high > low:
+        return low, high
+    return 0.9 * low, 1.1 * high
+
+
 def _direction_text(direction: float) -> str:
     """Direction of waves in words."""
     angle = degrees(direction)
@@ -65,12 +77,13 @@ def _direction_text(direction: float) -> str:
 def _axes(left: int, top: int, name: str, x_label: str, x: Array, sizes: Array) -> list[str]:
     """Axes and curves (H, P) of one degree of freedom."""
     across, down = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
-    low, high = float(x.min()), float(x.max())
-    most = ROOM * max(float(np.nanmax(sizes)), 1e-9)
+    low, high = axis_limits(x)
+    known = sizes[np.isfinite(sizes)]
+    most = ROOM * max(float(known.max(initial=0.0)), 1e-9)
     bottom = top + TOP + down
 
     def place_x(value: float) -> float:
-        return left + LEFT + across * (value - low) / max(high - low, 1e-9)
+        return left + LEFT + across * (value - low) / (high - low)
 
     def place_y(value: float) -> float:
         return bottom - down * value / most
@@ -90,14 +103,16 @@ def _axes(left: int, top: int, name: str, x_label: str, x: Array, sizes: Array) 
             f"{tick:.4g}</text>"
         )
     for i, curve in enumerate(sizes):
-        points = [
-            f"{place_x(a):.1f} {place_y(b):.1f}"
-            for a, b in zip(x.tolist(), curve.tolist(), strict=True)
-        ]
         colour = COLOURS[i % len(COLOURS)]
-        parts.append(
-            f'<path d="M{"L".join(points)}" fill="none" stroke="{colour}" stroke-width="2"/>'
-        )
+        points = []
+        for a, b in zip(x.tolist(), curve.tolist(), strict=True):
+            if isfinite(b):
+                points.append((place_x(a), place_y(b)))
+        for across_at, down_at in points:
+            parts.append(f'<circle cx="{across_at:.1f}" cy="{down_at:.1f}" r="2" fill="{colour}"/>')
+        if len(points) > 1:
+            line = "L".join(f"{across_at:.1f} {down_at:.1f}" for across_at, down_at in points)
+            parts.append(f'<path d="M{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
     middle = left + LEFT + across / 2
     parts.append(
         f'<text x="{middle:g}" y="{bottom + 34}" text-anchor="middle">{escape(x_label)}</text>'

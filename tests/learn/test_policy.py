@@ -149,7 +149,11 @@ def test_a_scenario_runs_a_policy_next_to_it_without_trust(tmp_path: Path) -> No
         ({"task": "berht"}, "task 'berht' does not exist; did you mean 'berth'?"),
         ({"period": 0.0}, "period"),
         ({"bounds": [1.0]}, "bounds: 1 numbers; allowed are 12"),
-        ({"observations": ["u_mps"]}, "observations ['u_mps']; hold_station has ['ahead_m'"),
+        (
+            {"observations": ["u_mps"]},
+            "observation 'u_mps'; hold_station has 'ahead_m' in its place",
+        ),
+        ({"up": [-1.0] * 5}, "up"),
         ({"sale": 1.0}, "sale"),
         ({"format": 2}, "format"),
     ],
@@ -192,10 +196,19 @@ def test_goals_and_settings_of_another_task_are_refused(tmp_path: Path) -> None:
     sense = Sense(0.0, 0.0, 0.0, NAN, NAN, 0.0, 0.0, 0.0, 0.0)
     with pytest.raises(BadInput, match="needs the goal x_m"):
         kind.from_settings({}).step(sense, {})
-    with pytest.raises(BadInput, match="'sway_mps' does not exist"):
+    with pytest.raises(BadInput, match="goal sway_mps does not apply to a policy for berth"):
         kind.from_settings({}).step(sense, {"sway_mps": 0.1})
     with pytest.raises(BadInput, match="which has no path"):
         kind.from_settings({"waypoints": [[0.0, 0.0], [1.0, 0.0]]})
     blind = Sense(0.0, 0.0, 0.0, NAN, NAN, NAN, NAN, 0.0, 0.0)
-    with pytest.raises(BadInput, match="no sensor measures u, v"):
+    with pytest.raises(BadInput, match="no sensor measures u, v, which"):
         kind.from_settings({}).step(blind, {"x_m": 0.0, "y_m": 0.0, "psi_rad": 0.0})
+
+
+def test_the_last_commands_stay_in_an_outage(tmp_path: Path) -> None:
+    path, *_ = written(tmp_path, "hold_station")
+    controller = load_class("controller", str(path)).from_settings({})
+    readings = {"psi": 0.1, "r": 0.0, "ax": NAN, "ay": NAN, "u": 0.1, "v": 0.0}
+    first = controller.step(Sense(t=0.0, x=0.3, y=0.1, **readings), {})
+    assert controller.step(Sense(t=0.2, x=NAN, y=NAN, **readings), {}) == first
+    assert controller.step(Sense(t=0.4, x=0.5, y=0.1, **readings), {}) != first

@@ -13,6 +13,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import AXES
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.wave_response import usual_periods, wave_response
+from boatsim.view.response_plot import response_plot
 from validation.waves.boats import linear_response
 from validation.waves.response import SPRINGS, FloatingCatamaran
 
@@ -79,13 +80,15 @@ def invoked(*words: str) -> tuple[int, str]:
 
 def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
     words = ["response", "--vessel", "otter", "--directions", "0,90", "--periods", "2,3"]
-    words += ["--waves", "strip_wave_loads,hull_spacing=0.79,hull_beam=0.25"]
-    code, printed = invoked(*words, "--out", str(tmp_path / "out"))
+    waves = ["--waves", "strip_wave_loads,hull_spacing=0.79,hull_beam=0.25"]
+    code, printed = invoked(*words, *waves, "--out", str(tmp_path / "out"))
     assert code == 0 and "regular waves of 0.02 m" in printed
     rows = list(csv.DictReader((tmp_path / "out" / "response.csv").open()))
     assert len(rows) == 4 and {row["period_s"] for row in rows} == {"2", "3"}
     heave = [float(row["heave_m_per_m"]) for row in rows if row["direction_rad"] == "0"]
     assert 0.5 < heave[0] < heave[1] < 1.0
+    one = [*words[:-1], "2", "--out", str(tmp_path / "one")]  # a single point
+    assert invoked(*one, "--waves", "strip_wave_loads")[0] == 0
     figure = (tmp_path / "out" / "response.svg").read_text(encoding="utf-8")
     assert figure.startswith("<svg") and "pitch [rad/m]" in figure and "(from port)" in figure
 
@@ -94,7 +97,10 @@ def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
     ("options", "message"),
     [
         (["--periods", "2,x"], "--periods 2,x: allowed are numbers"),
-        (["--periods=-1"], "allowed are times above 0"),
+        (["--periods=-1"], "allowed are numbers from 0.2 to 40 s"),
+        (["--directions", "400"], "allowed are numbers from -360 to 360 deg"),
+        (["--waves", "strip_wave_loads,toward=1"], "toward does not apply"),
+        (["--waves", "fan_wind"], "fan_wind is no effect of waves; allowed are hull_buoyancy"),
         (["--waves", "strip_wave_loads,4"], "'4' is no parameter"),
         (["--waves", "strip_wave_lods"], "did you mean 'strip_wave_loads'"),
         (["--speed", "2"], "--speed does not apply to response"),
@@ -109,3 +115,9 @@ def test_bad_input_is_one_line(options: list[str], message: str, tmp_path: Path)
 def test_options_of_a_response_do_not_apply_to_other_manoeuvres() -> None:
     code, printed = invoked("zigzag", "--vessel", "otter", "--periods", "2")
     assert code == 2 and "--periods does not apply to zigzag" in printed
+
+
+def test_a_figure_without_steady_responses_has_axes_only() -> None:
+    sizes = np.full((1, 2, 1), np.nan)
+    figure = response_plot("none", ["heave [m/m]"], "x", np.array([1.0, 2.0]), np.zeros(1), sizes)
+    assert "<path" not in figure and "heave" in figure

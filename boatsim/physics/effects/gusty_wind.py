@@ -1,7 +1,7 @@
 """Gusty wind: air drag in a wind with a mean, a profile with height and random gusts."""
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin, sqrt
+from math import atan, cos, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
 from numba import njit
@@ -19,6 +19,8 @@ DAVENPORT, HARRIS, NPD, NONE = map(float, range(4))
 # gusts smaller than a boat
 SLOWEST, FASTEST = 1.0 / 900.0, 0.5
 FIRST = 30_000  # index of the first random number, beyond those of waves
+FIRST_OF_DIRECTION = 40_000  # the same of the direction, beyond those of the gusts
+CELLS = 40  # of the frequency of the direction
 
 
 @njit
@@ -63,6 +65,35 @@ def gust_speed(t: float, q: Any) -> float:
 
 
 @njit
+def wind_direction(t: float, q: Any) -> float:
+    """Return the direction that the air moves to [rad].
+
+    It veers at a constant rate and varies as a process with an exponential correlation: a sum of
+    cosines, each with the energy of its cell of the frequency, whose variances add up to that of
+    the direction.
+
+    Args:
+        t: Time [s].
+        q: Parameters of the effect.
+    """
+    mean = q.toward + q.veer * t
+    if q.direction_sd == 0.0:
+        return float(mean)
+    turn = 2.0 * pi * q.direction_time
+    whole = atan(turn * FASTEST) - atan(turn * SLOWEST)
+    ratio = (FASTEST / SLOWEST) ** (1.0 / CELLS)
+    low, total = SLOWEST, 0.0
+    for k in range(CELLS):
+        share = (atan(turn * low * ratio) - atan(turn * low)) / whole
+        place = uniform_random(q.realisation, FIRST_OF_DIRECTION + 2 * k)
+        phase = 2.0 * pi * uniform_random(q.realisation, FIRST_OF_DIRECTION + 2 * k + 1)
+        frequency = low * (1.0 + (ratio - 1.0) * place)
+        total += sqrt(2.0 * share) * cos(2.0 * pi * frequency * t + phase)
+        low *= ratio
+    return float(mean + q.direction_sd * total)
+
+
+@njit
 def law(m: Any, q: Any) -> Wrench:
     """Return the air drag of the hull in a gusty wind.
 
@@ -76,7 +107,8 @@ def law(m: Any, q: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     speed = mean_speed_at(q.height, q.speed) + gust_speed(m.t, q)
-    north, east = speed * cos(q.toward), speed * sin(q.toward)
+    direction = wind_direction(m.t, q)
+    north, east = speed * cos(direction), speed * sin(direction)
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
     return air_drag(along, across, AIR_DENSITY, q, q.swing)
@@ -84,25 +116,29 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class GustyWind(Force):
-    """Air drag of the hull in a wind of constant direction whose speed has random gusts.
+    """Air drag of the hull in a wind whose speed has random gusts and whose direction may vary.
 
+    The direction veers at a constant rate, and varies at random with an exponential correlation n.
     The mean speed grows with the height by the power 1 / 7. `spectrum` of the gusts is "davenport",
-    "harris", "npd" (of the Norwegian Petroleum Directorate, with the height) or "none". Gusts of
-    2 s to 15 min are simulated; the realisation and the seed of the scenario give their phases.
+    "harris", "npd" (of the Norwegian Petroleum Directorate, with the height) or "none". Gusts and
+    changes of direction of 2 s to 15 min are simulated; the realisation and the seed of the
+    scenario give their phases.
     """
 
     formula: ClassVar[str] = (
         r"\begin{aligned} X &= \tfrac{1}{2} \rho \, U A_x a, \quad Y = \tfrac{1}{2} \rho "
         r"\, U A_y b, \quad N = \left(l + l_1 \frac{a}{U}\right) Y, \quad "
-        r"U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma - \psi) - u, \quad b = V(t) "
-        r"\sin(\gamma - \psi) - v \\ V(t) &= V_{10} "
+        r"U = \sqrt{a^2 + b^2} \\ a &= V(t) \cos(\gamma(t) - \psi) - u, \quad b = V(t) "
+        r"\sin(\gamma(t) - \psi) - v \\ V(t) &= V_{10} "
         r"\left(\frac{h}{10}\right)^{1/7} + \sum_i \sqrt{2 S(f_i) \Delta f_i} \cos(2 \pi f_i t + "
-        r"\epsilon_i) \end{aligned}"
+        r"\epsilon_i) \\ \gamma(t) &= \gamma_0 + \dot\gamma t + \sigma_\gamma \, n(t) \end{aligned}"
     )
     symbols: ClassVar = {
         "speed": "V_{10}",
         "height": "h",
-        "toward": r"\gamma",
+        "toward": r"\gamma_0",
+        "veer": r"\dot\gamma",
+        "direction_sd": r"\sigma_\gamma",
         "front": "A_x",
         "side": "A_y",
         "arm": "l",
@@ -123,6 +159,15 @@ class GustyWind(Force):
         5.0, low=0.0, high=60.0, unit="m/s", words="mean speed at a height of 10 m"
     )
     toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="direction the air moves to")
+    veer: float = param(
+        0.0, low=-1.0, high=1.0, unit="rad/s", words="rate at which the wind veers, clockwise"
+    )
+    direction_sd: float = param(
+        0.0, low=0.0, high=1.5, unit="rad", words="standard deviation of the direction"
+    )
+    direction_time: float = param(
+        60.0, low=1.0, high=1e5, unit="s", words="correlation time of the direction"
+    )
     height: float = param(
         1.0, low=0.05, high=200.0, unit="m", words="height of the middle of the drag areas"
     )
@@ -166,7 +211,8 @@ class GustyWind(Force):
         """
         values = self.values()
         speed = mean_speed_at(self.height, self.speed) + gust_speed(t, values)
-        return speed * cos(self.toward), speed * sin(self.toward)
+        direction = wind_direction(t, values)
+        return speed * cos(direction), speed * sin(direction)
 
     def with_seed(self, seed: int) -> Self:
         """Return a copy of the wind whose random gusts follow from the seed.

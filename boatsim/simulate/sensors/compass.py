@@ -26,8 +26,9 @@ class Compass(GradedSensor):
 
     Its readings are turned to the horizontal plane by roll and pitch as the compass knows them:
     `compensation = "none"` takes the hull for upright; "accelerometer" takes the specific force,
-    gravity and acceleration together, for the vertical, as a compass without gyros does; "exact"
-    has true roll and pitch. The vertical part of the earth's field then shows as a heading error.
+    gravity and acceleration together since the last reading, for the vertical, as a compass without
+    gyros does; "exact" has true roll and pitch. The vertical part of the earth's field then shows
+    as a heading error.
     """
 
     words: ClassVar[str] = "magnetic compass with noise, deviation and tilt error"
@@ -61,16 +62,16 @@ class Compass(GradedSensor):
             message = unknown_name_message("compensation", self.compensation, COMPENSATIONS)
             raise BadInput(f"Compass: {message}")
 
-    def start(self, rng: np.random.Generator) -> "FluxgateCompass":
+    def start(self, rng: np.random.Generator) -> "Magnetometer":
         """Return the compass at the start of a run.
 
         Args:
             rng: Random generator of its errors.
         """
-        return FluxgateCompass(self, rng)
+        return Magnetometer(self, rng)
 
 
-class FluxgateCompass(Instrument):
+class Magnetometer(Instrument):
     """A compass in a run: phase of its deviation and last motion."""
 
     def __init__(self, sensor: Compass, rng: np.random.Generator) -> None:

@@ -21,7 +21,8 @@ EXACT = 1e-9  # of a ping: times of control steps are sums of floating-point num
 class Dvl(GradedSensor):
     """Measures `u` and `v` of `Sense`, the velocity of its place over ground along body axes.
 
-    A ping is held until the next one. Without bottom lock, in an outage or beyond the largest tilt,
+    A ping is taken at the first control step at which it is due, and held until the next one.
+    Without bottom lock, in an outage or beyond the largest tilt,
     there is no velocity (nan).
     """
 
@@ -48,16 +49,16 @@ class Dvl(GradedSensor):
     starboard: float = param(0.0, low=-1e3, high=1e3, unit="m", words="to starboard of it")
     below: float = param(0.0, low=-1e3, high=1e3, unit="m", words="below it")
 
-    def start(self, rng: np.random.Generator) -> "Log":
+    def start(self, rng: np.random.Generator) -> "DopplerLog":
         """Return the velocity log at the start of a run.
 
         Args:
             rng: Random generator of its errors.
         """
-        return Log(self, rng)
+        return DopplerLog(self, rng)
 
 
-class Log(Instrument):
+class DopplerLog(Instrument):
     """A Doppler velocity log in a run: scale error and last ping."""
 
     def __init__(self, sensor: Dvl, rng: np.random.Generator) -> None:

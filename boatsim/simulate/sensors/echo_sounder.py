@@ -22,8 +22,8 @@ class EchoSounder(GradedSensor):
 
     r = h / cos(max(0, tilt - beam / 2)),  h = water depth - depth of the transducer
 
-    The first echo comes from the nearest point of the bottom in the beam. Beyond the largest range
-    there is none (nan).
+    The first echo comes from the nearest point of the bottom in the beam. A ping is taken at the
+    first control step at which it is due. Beyond the largest range there is no echo (nan).
     """
 
     words: ClassVar[str] = "echo sounder above a flat bottom, with beam and tilt"

@@ -23,7 +23,8 @@ class Gnss(GradedSensor):
 
     A fix at k / rate is available after the latency, until the next one. Its error in each
     coordinate is white noise plus a Gauss-Markov process of first order. During an outage there is
-    no position (nan). The antenna moves with roll and pitch; the position is not corrected for it.
+    no position (nan), and the age of the last fix grows. At the start the fix of t = 0 is there.
+    The antenna moves with roll and pitch; the position is not corrected for it.
     """
 
     words: ClassVar[str] = "satellite receiver with rate, latency, slow errors and outages"
@@ -79,7 +80,8 @@ class Receiver(Instrument):
         self._errors = errors
         self._outages = Outages(sensor.outage_interval, sensor.outage_length, outages)
         self._drift = sensor.drift_sd * errors.standard_normal(2)
-        self._fix = -1  # number of the last fix
+        self._fix = -1  # number of the last fix, also of those in outages
+        self._last_fix = 0  # number of the last one that gave a position
         self._position = np.full(2, nan)
         self._path: list[tuple[float, Array]] = []  # times and positions of the antenna
 
@@ -95,7 +97,7 @@ class Receiver(Instrument):
         while self._fix < newest:
             self._take_fix()
         x, y = self._position.tolist()
-        return {"x": x, "y": y, "fix_age_s": state.t - self._fix / sensor.rate}
+        return {"x": x, "y": y, "fix_age_s": state.t - self._last_fix / sensor.rate}
 
     def _take_fix(self) -> None:
         """Compute the next fix."""
@@ -108,9 +110,10 @@ class Receiver(Instrument):
             self._drift = keeps * self._drift + sensor.drift_sd * sqrt(1.0 - keeps**2) * noise[0]
         out = self._outages.at(t)
         true = self._antenna_at(t)
-        self._position = (
-            np.full(2, nan) if out else true + self._drift + sensor.position_sd * noise[1]
-        )
+        self._position = np.full(2, nan)
+        if not out:
+            self._position = true + self._drift + sensor.position_sd * noise[1]
+            self._last_fix = self._fix
 
     def _antenna_at(self, t: float) -> Array:
         """Position of the antenna at a time, linear between two control steps."""

@@ -26,8 +26,9 @@ class Imu(GradedSensor):
     The accelerometers measure the specific force f, the acceleration a of their place less that of
     gravity g (down): at rest and upright az is -9.81 m/s^2, and with a heel phi ay is
     -g sin(phi).
-    All readings are means since the last one, as those of a unit that integrates. Each axis has
-    white noise, a bias drawn at the start, and a random walk of the bias.
+    All readings are means since the last one, from the motion at both ends: the control period has
+    to be short against that of the motion, a twentieth for errors of 1 %. Each axis has white
+    noise, a bias drawn at the start, and a random walk of the bias.
     """
 
     words: ClassVar[str] = "inertial unit in six degrees of freedom, with gravity and bias walk"
@@ -66,16 +67,16 @@ class Imu(GradedSensor):
     starboard: float = param(0.0, low=-1e3, high=1e3, unit="m", words="to starboard of it")
     above: float = param(0.0, low=-1e3, high=1e3, unit="m", words="above it")
 
-    def start(self, rng: np.random.Generator) -> "Unit":
+    def start(self, rng: np.random.Generator) -> "InertialUnit":
         """Return the inertial unit at the start of a run.
 
         Args:
             rng: Random generator of its errors.
         """
-        return Unit(self, rng)
+        return InertialUnit(self, rng)
 
 
-class Unit(Instrument):
+class InertialUnit(Instrument):
     """An inertial unit in a run: biases and last motion."""
 
     def __init__(self, sensor: Imu, rng: np.random.Generator) -> None:

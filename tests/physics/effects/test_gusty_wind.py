@@ -70,6 +70,38 @@ def test_gusts_have_the_mean_and_the_rms_of_the_spectrum(spectrum: str) -> None:
     assert speed.std() == pytest.approx(np.sqrt(variance), rel=0.02)
 
 
+def directions(own: GustyWind, t: np.ndarray) -> np.ndarray:
+    """Direction of the air, from its velocity."""
+    north, east = np.array([own.air_velocity(s) for s in t.tolist()]).T
+    return np.unwrap(np.arctan2(east, north))
+
+
+def test_the_direction_veers_and_varies_with_its_deviation_and_correlation_time() -> None:
+    t = np.arange(0.0, 60000.0, 2.7)
+    own = GustyWind(spectrum="none", toward=0.4, direction_sd=0.2, direction_time=60.0)
+    found = directions(own, t)
+    assert found.mean() == pytest.approx(0.4, abs=0.02)
+    assert found.std() == pytest.approx(0.2, rel=0.05)
+    # energy below a frequency: that of an exponential correlation between both ends
+    changes = found[1:] - found[:-1]
+    ends = [np.arctan(2.0 * pi * 60.0 * f) for f in (SLOWEST, FASTEST)]
+    expected = quad(
+        lambda f: (
+            4.0 * 60.0 / (1.0 + (2.0 * pi * f * 60.0) ** 2) * (1.0 - np.cos(2 * pi * f * 2.7))
+        ),
+        SLOWEST,
+        FASTEST,
+        limit=400,
+    )[0]
+    expected *= 0.2**2 * 2.0 / (2.0 / pi * (ends[1] - ends[0]))
+    assert np.mean(changes**2) == pytest.approx(expected, rel=0.1)
+    veering = replace(own, veer=0.001)
+    assert directions(veering, t) - found == pytest.approx(0.001 * t)
+    # other random numbers than those of the gusts
+    gusts = wind_speeds(GustyWind(spectrum="npd", speed=12.0), t[:4000])
+    assert abs(np.corrcoef(gusts, found[:4000])[0, 1]) < 0.15
+
+
 @pytest.mark.parametrize("height", [0.5, 10.0, 40.0])
 def test_without_gusts_it_is_a_steady_stream_with_the_profile_of_the_height(height: float) -> None:
     own = GustyWind(spectrum="none", speed=7.0, height=height, toward=0.8, arm=0.1)
