@@ -107,6 +107,7 @@ TO_STARBOARD = {
     "steering_offset.middle",
     "steering_offset.gain",
     "steering_asymmetry.gain",
+    "gusty_wind.veer",
 }
 TO_STARBOARD |= {
     f"mmg_low_speed_propeller.{axis}_{form}"
@@ -161,7 +162,8 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         for name in set(MassMatrix._fields) - set(AXES):
             values[name] *= 0.2 * least
     values.pop("cut", None)  # a sea without most of its energy is refused
-    values.pop("spreading", None)  # random directions have no mirror image with the same seed
+    for name in ("spreading", "direction_sd"):
+        values.pop(name, None)  # random directions have no mirror image with the same seed
     return kind(**values)
 
 
