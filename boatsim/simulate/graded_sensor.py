@@ -39,8 +39,11 @@ class GradedSensor(Sensor):
 
     @classmethod
     def grades(cls) -> Mapping[str, Mapping[str, Value]]:
-        """Return the values of the parameters that each grade of the sensor sets, by its name."""
-        return sensor_grades()[snake_case(cls.__name__)]
+        """Return the values of the parameters that each grade of the sensor sets, by its name.
+
+        It is empty for a sensor that the table of grades lacks.
+        """
+        return sensor_grades().get(snake_case(cls.__name__), {})
 
     @classmethod
     def from_settings(cls, settings: Mapping[str, object]) -> Self:
@@ -54,6 +57,8 @@ class GradedSensor(Sensor):
         """
         grades = cls.grades()
         grade = settings.get("grade") or "consumer"
+        if not grades and not settings.get("grade"):
+            return super().from_settings(settings)
         if not isinstance(grade, str) or grade not in grades:
             raise BadInput(unknown_name_message(f"{cls.__name__}: grade", str(grade), grades))
         return super().from_settings({**grades[grade], **settings})
