@@ -9,6 +9,7 @@ import argparse
 import csv
 import os
 import resource
+import sys
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -19,7 +20,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from torch import nn
 
-from boatsim.errors import unknown_name_message
+from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import replace_file
 from boatsim.learn import registration
 from boatsim.learn.policy_export import Layer, describe_policy, write_policy
@@ -142,9 +143,29 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, required=True, help="folder of the files")
     given = parser.parse_args()
+    try:
+        train_and_write(given)
+    except BadInput as error:
+        print(f"boatsim: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+
+
+def train_and_write(given: argparse.Namespace) -> None:
+    """Train a policy and write its files.
+
+    Args:
+        given: Arguments of the command line.
+
+    Raises:
+        BadInput: The environment or the vessel does not exist, or a number is not allowed.
+    """
     if given.id not in registration.environment_ids():
-        message = unknown_name_message("environment", given.id, registration.environment_ids())
-        raise SystemExit(f"boatsim: {message}")
+        raise BadInput(
+            unknown_name_message("environment", given.id, registration.environment_ids())
+        )
+    for option in ("steps", "boats"):
+        if getattr(given, option) < 1:
+            raise BadInput(f"--{option} {getattr(given, option)}: allowed is at least 1")
     given.out.mkdir(parents=True, exist_ok=True)
     start = monotonic()
     learner, env, curve = train(given.id, given.vessel, given.steps, given.boats, given.seed)
