@@ -138,8 +138,8 @@ def _print_largest(found: WaveResponse) -> None:
     head = ["freedom", "largest response", "period [s]", "waves run to [deg]"]
     print_text_table(f"{found.vessel} in regular waves of {found.height:g} m", head, rows, 1)
     lines = [
-        "Motion per amplitude of the waves at zero speed, held by soft springs; waves run to the "
-        "given direction relative to the bow: 0 deg from astern, 180 deg from ahead."
+        "Motion per amplitude of the waves at zero speed, held by soft springs.",
+        "Directions are relative to the bow: 0 deg for waves from astern, 180 deg from ahead.",
     ]
     unsteady = ~found.steady
     if unsteady.any():
