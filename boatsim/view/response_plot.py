@@ -55,8 +55,8 @@ def response_plot(
     return "\n".join([*parts, "</svg>\n"])
 
 
-def axis_limits(x: Array) -> tuple[float, float]:
-    """Return the limits of an axis, with room around a single value.
+def axis_ends(x: Array) -> tuple[float, float]:
+    """Return the ends of an axis, with room around a single value.
 
     Args:
         x: Values (P,).
@@ -77,7 +77,7 @@ def _direction_text(direction: float) -> str:
 def _axes(left: int, top: int, name: str, x_label: str, x: Array, sizes: Array) -> list[str]:
     """Axes and curves (H, P) of one degree of freedom."""
     across, down = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
-    low, high = axis_limits(x)
+    low, high = axis_ends(x)
     known = sizes[np.isfinite(sizes)]
     most = ROOM * max(float(known.max(initial=0.0)), 1e-9)
     bottom = top + TOP + down
