@@ -19,7 +19,7 @@ from boatsim.control.approach import Approach
 from boatsim.control.base import Controller, Sense
 from boatsim.learn import episode_random, registration
 from boatsim.learn.environment_options import make_simulation
-from boatsim.learn.pilot import Pilot, run_episodes
+from boatsim.learn.pilot import Pilot, play_to_end, run_episodes
 from boatsim.learn.play import TaskSimulation
 from boatsim.learn.policy import Policy, load_policy
 from boatsim.learn.tasks.follow_path import FollowPath
@@ -188,16 +188,7 @@ def policy_metrics(policy: Policy, play: TaskSimulation, seeds: episode_random.S
         seeds: Seeds (n,) of the episodes.
     """
     play.begin_episodes(seeds, np.arange(play.n))
-    metrics: Metrics = {}
-    running = np.ones(play.n, dtype=bool)
-    while running.any():
-        done = play.step(policy.act(play.observations(normalised=False)))
-        first_end = running[done.finished]
-        for name, values in done.metrics.items():
-            column = metrics.setdefault(name, np.zeros(play.n, dtype=values.dtype))
-            column[done.finished[first_end]] = values[first_end]
-        running[done.finished] = False
-    return metrics
+    return play_to_end(play, lambda _: play.step(policy.act(play.observations(normalised=False))))
 
 
 def main_figures(task: str, metrics: Metrics) -> Array:

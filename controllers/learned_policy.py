@@ -43,7 +43,7 @@ class LearnedPolicy(PlannedPath, Controller):
     `use = "out/berth/policy.onnx"` runs a policy of `boatsim.learn.train`. A policy that berths or
     holds a station takes the goals `x_m`, `y_m` and `psi_rad`; a station is the position at the
     start without them. A policy of the joystick takes `sway_mps` and `yaw_radps`; one that follows
-    a path takes `waypoints` and their way of connection.
+    a path takes `waypoints` and the shape `path` that connects them.
     """
 
     words: ClassVar[str] = 'policy of reinforcement learning; use = its file, "policy.onnx"'
@@ -139,10 +139,10 @@ class LearnedPolicy(PlannedPath, Controller):
             )
         if self._start is None:
             self._start = (sense.x, sense.y, sense.psi)
-        observed = self._observed(sense, goal)
-        limits = np.array(self._policy.description.bounds)
-        row = np.clip([*observed, *self._last], -limits, limits)
-        self._last = self._policy.act(row[None].astype(np.float32))[0]
+            if self._path is not None:
+                self._along = self._path.nearest(sense.x, sense.y)
+        row = np.array([[*self._observed(sense, goal), *self._last]], dtype=np.float32)
+        self._last = self._policy.act(row)[0]
         commands = self._policy.controls.commands(self._last[None])[0]
         self._sent = dict(zip(self.channels(), commands.tolist(), strict=True))
         return self._sent

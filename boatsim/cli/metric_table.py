@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from boatsim.errors import escape_for_terminal
-from boatsim.view.run_facts import plain_name
+from boatsim.view.content_names import plain_name
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -15,6 +15,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.wave_response import (
     WaveResponse,
+    deep_water_length,
     largest_responses,
     usual_periods,
     wave_response,
@@ -171,12 +172,11 @@ def _write_csv(found: WaveResponse, path: Path) -> None:
 
 def _plot(found: WaveResponse, length: float) -> str:
     """Figure of all responses over the length of the waves in deep water."""
-    wave_lengths = 9.81 * found.periods**2 / (2.0 * pi) / length
     return response_plot(
         f"{found.vessel}: response to regular waves of {found.height:g} m",
         [f"{axis} [{_unit(axis)}]" for axis in found.dof],
         "wavelength over length of the vessel",
-        wave_lengths,
+        deep_water_length(found.periods) / length,
         found.directions,
         np.abs(found.operators),
     )

@@ -12,7 +12,7 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.tracking_errors import error_units
-from boatsim.view.run_facts import plain_name
+from boatsim.view.content_names import plain_name
 from boatsim.view.scene import Scene
 
 # [s] which the compilation of a vessel usually takes, the first time only: 9 to 14 s were measured

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
 from boatsim.learn.episode_random import Seeds
-from boatsim.learn.play import TaskSimulation
+from boatsim.learn.play import Flags, Step, TaskSimulation
 from boatsim.physics.signals import Array
 
 
@@ -45,15 +45,32 @@ def run_episodes(
     play.begin_episodes(seeds, np.arange(play.n))
     pilots = [make_pilot(goal) for goal in play.goals]
     commands = play.commands.copy()
-    metrics: dict[str, Array] = {}
-    running = np.ones(play.n, dtype=bool)
-    while running.any():
+
+    def step(running: Flags) -> Step:
         times = play.t
         motions = np.column_stack(play.motion).tolist()
         for boat in np.flatnonzero(running).tolist():
             sent = pilots[boat].step(_sense(float(times[boat]), motions[boat]))
             commands[boat] = _command_row(sent, play)
-        done = play.step_commands(commands)
+        return play.step_commands(commands)
+
+    return play_to_end(play, step)
+
+
+def play_to_end(play: TaskSimulation, step: Callable[[Flags], Step]) -> dict[str, Array]:
+    """Simulate until the first episode of every boat has ended.
+
+    Args:
+        play: The simulation of n boats, whose episodes have begun.
+        step: Simulates one control step; it gets whether the first episode of each boat (n,) lasts.
+
+    Returns:
+        Metrics (n,) of the episodes by name.
+    """
+    metrics: dict[str, Array] = {}
+    running = np.ones(play.n, dtype=bool)
+    while running.any():
+        done = step(running)
         first_end = running[done.finished]
         for name, values in done.metrics.items():
             column = metrics.setdefault(name, np.zeros(play.n, dtype=values.dtype))

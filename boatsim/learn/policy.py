@@ -7,6 +7,7 @@ metadata entry `boatsim` describes observations, actions and vessel as JSON.
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
@@ -85,20 +86,20 @@ class Policy:
     task: Task
     session: Any
 
-    @property
+    @cached_property
     def scale(self) -> Scale:
         """Length, beam and speed of the vessel, by which the task is scaled."""
         given = self.description
         return Scale(given.length, given.beam, given.speed)
 
-    @property
+    @cached_property
     def hull(self) -> Hulls:
         """Waterplane rectangle of the vessel, for one boat."""
         given = self.description
         sizes = (0.5 * given.length, 0.5 * given.beam, given.mid_length)
         return Hulls(*[np.array([size]) for size in sizes])
 
-    @property
+    @cached_property
     def controls(self) -> Controls:
         """Conversion of the actions to commands of the vessel."""
         given = self.description

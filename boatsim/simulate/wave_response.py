@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.content import load_class, shipped_content_names
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel
 from boatsim.physics.vessel.effect_tables import effect_table
 from boatsim.physics.vessel.wave_field import wave_field
@@ -23,7 +24,7 @@ FITTED = 10  # periods of a fit; a Hann window over them separates waves from ot
 # The response is steady if its degrees of freedom differ between two successive fits by less than
 # this share of the largest: model tests repeat within some per cent
 STEADY = 0.005
-MOST_FITS = 40
+MOST_FITS = 40  # 400 periods: a roll damped by 1 % of the critical damping has long decayed
 # Frequency of the springs that hold place and heading, as a share of that of the waves: they change
 # the response by its square, 0.25 %
 SPRING_SHARE = 0.05
@@ -222,7 +223,16 @@ def usual_periods(length: float, count: int) -> Array:
         count: Number of periods; their lengths are in equal ratios.
     """
     wave_lengths = length * np.geomspace(0.5, 10.0, count)
-    return np.asarray(np.sqrt(2.0 * pi * wave_lengths / 9.81))
+    return np.asarray(np.sqrt(2.0 * pi * wave_lengths / GRAVITY))
+
+
+def deep_water_length(periods: Array) -> Array:
+    """Return the lengths of waves in deep water [m].
+
+    Args:
+        periods: Periods [s].
+    """
+    return np.asarray(GRAVITY * periods**2 / (2.0 * pi))
 
 
 def largest_responses(found: WaveResponse) -> Iterable[tuple[str, float, float, float]]:

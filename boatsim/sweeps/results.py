@@ -15,7 +15,7 @@ from boatsim.physics.signals import Array
 from boatsim.sweeps import table
 from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.plan import Plan
-from boatsim.view.run_facts import plain_names
+from boatsim.view.content_names import plain_names
 
 NAME = "sweep.parquet"
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.atomic_folder import PART
+from boatsim.view.content_names import plain_name
 from boatsim.view.formatting import capitalize, join_words, name_in_words
-from boatsim.view.run_facts import plain_name
 from boatsim.view.run_sentence import run_sentence, run_verdict
 
 METRICS, DIAGNOSIS, JOURNAL, LOG = "norms.json", "diagnosis.json", "journal.jsonl", "recording.csv"

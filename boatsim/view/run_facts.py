@@ -1,12 +1,12 @@
 """Facts of a run for its page: vessel, water, wind, waves and current, controller, seed."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from boatsim.physics.kinds.effect import Effect
 from boatsim.simulate.evaluation import RunEntry
 from boatsim.simulate.scenario import Scenario
 from boatsim.version import version
+from boatsim.view.content_names import plain_name
 from boatsim.view.formatting import (
     capitalize,
     format_quantity,
@@ -51,32 +51,6 @@ def run_facts(scenario: Scenario, result: RunEntry) -> list[tuple[str, str]]:
         ("Version", f"boatsim {version()}"),
     ]
     return facts
-
-
-def plain_name(name: str) -> str:
-    """Return the name of content that may be given as the path of its file.
-
-    Args:
-        name: Name or path, such as "my/controllers/course.py" or "my/cases.toml:calm".
-    """
-    path, colon, case = name.rpartition(":")
-    if colon and path.endswith(".toml"):
-        return case
-    if name.endswith((".py", ".onnx", ".toml")):
-        return Path(name.replace("\\", "/")).stem
-    return name
-
-
-def plain_names(names: Sequence[str]) -> dict[str, str]:
-    """Return the plain names of names or paths, or themselves where two names would be equal.
-
-    Args:
-        names: Names or paths.
-    """
-    labels = {name: plain_name(name) for name in names}
-    if len(set(labels.values())) < len(labels):
-        return {name: name for name in labels}
-    return labels
 
 
 def _period(scenario: Scenario) -> str:

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from boatsim.recordings.table import Recording, read
 from boatsim.simulate import scenario
 from boatsim.simulate.run_files import run_into_folder
-from boatsim.view.run_facts import environment_facts, plain_name
+from boatsim.view.content_names import plain_name
+from boatsim.view.run_facts import environment_facts
 from boatsim.view.run_figures import select_plots
 from boatsim.view.run_observers import page_observer
 from boatsim.view.run_page import run_command

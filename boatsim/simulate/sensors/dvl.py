@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import cos, floor, nan
+from math import cos, nan
 from typing import ClassVar
 
 import numpy as np
@@ -10,11 +10,10 @@ import numpy as np
 from boatsim.physics.base import param
 from boatsim.simulate.graded_sensor import GradedSensor
 from boatsim.simulate.outages import Outages
+from boatsim.simulate.sample_number import sample_number
 from boatsim.simulate.sensing import Instrument
 from boatsim.simulate.sensor_motion import velocity_of
 from boatsim.simulate.stepper import Stepper
-
-EXACT = 1e-9  # of a ping: times of control steps are sums of floating-point numbers
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class DopplerLog(Instrument):
             engine: The engine, whose vessel is measured.
         """
         sensor, state = self._sensor, engine.state
-        ping = floor(state.t * sensor.rate + EXACT)
+        ping = sample_number(state.t, sensor.rate)
         if ping > self._ping:
             self._ping = ping
             noise = self._errors.standard_normal(2)

@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import acos, cos, floor, nan
+from math import acos, cos, nan
 from typing import ClassVar
 
 import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.simulate.graded_sensor import GradedSensor
+from boatsim.simulate.sample_number import sample_number
 from boatsim.simulate.sensing import Instrument
 from boatsim.simulate.sensor_motion import position_of
 from boatsim.simulate.stepper import Stepper
-
-EXACT = 1e-9  # of a ping: times of control steps are sums of floating-point numbers
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ class Sounder(Instrument):
             engine: The engine, whose vessel is measured.
         """
         sensor, state = self._sensor, engine.state
-        ping = floor(state.t * sensor.rate + EXACT)
+        ping = sample_number(state.t, sensor.rate)
         if ping > self._ping:
             self._ping = ping
             height = sensor.water_depth - float(position_of(state, self._place)[2])

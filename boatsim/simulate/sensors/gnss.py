@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp, floor, nan, sqrt
+from math import exp, nan, sqrt
 from typing import ClassVar
 
 import numpy as np
@@ -10,11 +10,10 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.simulate.graded_sensor import GradedSensor
 from boatsim.simulate.outages import Outages
+from boatsim.simulate.sample_number import sample_number
 from boatsim.simulate.sensing import Instrument
 from boatsim.simulate.sensor_motion import position_of
 from boatsim.simulate.stepper import Stepper
-
-EXACT = 1e-9  # of a fix: times of control steps are sums of floating-point numbers
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ class Receiver(Instrument):
         """
         sensor, state = self._sensor, engine.state
         self._path.append((state.t, position_of(state, self._antenna)[:2]))
-        newest = max(floor((state.t - sensor.latency) * sensor.rate + EXACT), 0)
+        newest = max(sample_number(state.t - sensor.latency, sensor.rate), 0)
         while self._fix < newest:
             self._take_fix()
         x, y = self._position.tolist()
