@@ -134,7 +134,7 @@ def main() -> None:
         print(f"{test:8}" + ", ".join(cells), flush=True)
     print("\nrestlessness of the motors ahead and astern [PWM of 255]")
     for bandwidth in (0.5, 2.0):
-        law = {"use": "l1_joystick", "surge_bandwidth": bandwidth}
+        law = {"use": "l1_joystick", "surge_bandwidth": bandwidth, "pole": 0.7 * bandwidth}
         print(
             f"l1_joystick, surge low-pass {bandwidth:g} rad/s"
             + pwm_standard_deviations("sway_1", law)

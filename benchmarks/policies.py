@@ -155,7 +155,6 @@ def classical_pilots(play: TaskSimulation) -> dict[str, tuple[float, MakePilot]]
         outer = "with an outer loop"
         return {
             f"`l1_joystick` {outer}": (0.08, berthing("l1_joystick")),
-            f"`l1_joystick_lag` {outer}": (0.08, berthing("l1_joystick_lag")),
             "`dp`": (0.2, dp),
         }
     if name == "hold_station":
@@ -166,7 +165,7 @@ def classical_pilots(play: TaskSimulation) -> dict[str, tuple[float, MakePilot]]
             for law in ("adaptive", "integral")
             for lookahead in (3.0, 1.5)  # the default, and a shorter one
         }
-    rivals = ("l1_joystick", "l1_joystick_lag", "pid_autopilot", "adrc", "indi", "lqi", "mpc")
+    rivals = ("l1_joystick", "pid_autopilot", "adrc", "indi", "lqi", "mpc")
     return {f"`{rival}`": (0.08, stick(rival)) for rival in rivals}
 
 

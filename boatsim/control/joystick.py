@@ -35,6 +35,9 @@ SURGE_PULSE = 0.02  # [m/s]
 SWAYING_PULSE = 0.005  # [m/s] of surge in sway, where the allocation leaves little thrust to surge
 YAW_PULSE = 0.01  # [rad/s]
 STEERED_PULSE = 0.02  # [rad/s] in sway, where a step of 1 deg of the servos is 7 mN m
+# [1/s] pole to which these pulses belong; a slower controller answers a pulse with a smaller force,
+# so that it needs a higher one to be as large against the rounding
+PULSED_POLE = 1.4
 # X [N], N [N m]: values applied in the last period
 REMEMBERS = record_type("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
 
@@ -204,7 +207,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
 
     def operating_points(self) -> tuple[OperatingPoint, ...]:
         """Return the steady motions at which the controller's loops are analysed on a vessel."""
-        return joystick_operating_points(self, self.yaw_loop, self.surge_loop())
+        return joystick_operating_points(self, self.yaw_loop, self.surge_loop(), self.pole)
 
     def yaw_loop(self, swaying: bool) -> FeedbackLoop:
         """Return the feedback of the yaw rate.
@@ -242,7 +245,10 @@ def outboard_loop(outboards: Outboards, axis: str, swaying: bool, law: SampledLa
 
 
 def joystick_operating_points(
-    outboards: Outboards, yaw_loop: Callable[[bool], FeedbackLoop], surge_loop: FeedbackLoop
+    outboards: Outboards,
+    yaw_loop: Callable[[bool], FeedbackLoop],
+    surge_loop: FeedbackLoop,
+    pole: float = PULSED_POLE,
 ) -> tuple[OperatingPoint, ...]:
     """Return the steady motions at which the loops of a joystick controller are analysed.
 
@@ -254,13 +260,15 @@ def joystick_operating_points(
         outboards: The controller.
         yaw_loop: Returns the yaw loop with or without a sway demand.
         surge_loop: The surge loop.
+        pole: Pole of the response to a set point [1/s].
     """
     ahead, turn = {"surge_mps": AHEAD}, {"yaw_radps": RATED_TURN}
     sway = {"sway_mps": outboards.rated_sway}
-    pulse, blind = {"yaw_radps": YAW_PULSE}, ("u", "v")
-    steered = {"yaw_radps": STEERED_PULSE, "surge_mps": SWAYING_PULSE}
+    higher = PULSED_POLE / pole
+    pulse, blind = {"yaw_radps": higher * YAW_PULSE}, ("u", "v")
+    steered = {"yaw_radps": higher * STEERED_PULSE, "surge_mps": higher * SWAYING_PULSE}
     return (
-        OperatingPoint("surge", (surge_loop,), ahead, {"surge_mps": SURGE_PULSE}, ("v",)),
+        OperatingPoint("surge", (surge_loop,), ahead, {"surge_mps": higher * SURGE_PULSE}, ("v",)),
         OperatingPoint("yaw ahead", (yaw_loop(False),), ahead, pulse, blind),
         OperatingPoint("yaw in a turn", (yaw_loop(False),), turn, pulse, blind),
         OperatingPoint("yaw, surge in sway", (yaw_loop(True), surge_loop), sway, steered, ("v",)),

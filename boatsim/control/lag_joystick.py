@@ -12,6 +12,12 @@ from typing import ClassVar
 from boatsim.control.allocation import STICK, Outboards
 from boatsim.control.compiled import CompiledController, merged
 from boatsim.control.joystick import joystick_operating_points, outboard_loop
+from boatsim.control.lag_design import (
+    HEADING_SHARE,
+    POLE_SHARE,
+    LagBasedController,
+    bandwidth_for_delay,
+)
 from boatsim.control.operating_points import (
     AxisLaw,
     FeedbackLoop,
@@ -19,13 +25,6 @@ from boatsim.control.operating_points import (
     sampled_linear_law,
 )
 from boatsim.physics.base import UNSET, param
-
-# [s] delay or lag that a boat may have in addition to the known ones. With it, 95 % of randomly
-# drawn scale boats survive an additional delay of 0.4 s under `l1_joystick_lag`
-# (docs/robustness.md).
-RESERVE = 0.3
-POLE_SHARE = 0.5  # of the bandwidth: pole of the response to a set point
-HEADING_SHARE = 0.2  # of the bandwidth: a fifth separates heading from rate
 
 
 @merged
@@ -44,11 +43,11 @@ def actuator_output(before: float, commanded: float, lag: float, period: float) 
 
 
 @dataclass
-class LagJoystick(Outboards, CompiledController):
+class LagJoystick(LagBasedController, Outboards, CompiledController):
     """Base of joystick controllers whose gains follow from one bandwidth.
 
-    With the effective delay theta = period / 2 + command_delay + motor_lag + 0.3 s the bandwidth is
-    1 / (2 theta), that of the SIMC rule for an integrating process (S. Skogestad, Journal of
+    With the effective delay theta = period / 2 + command_delay + motor_lag + 0.33 s the bandwidth
+    is 1 / (2 theta), that of the SIMC rule for an integrating process (S. Skogestad, Journal of
     Process Control 13, 2003). The pole of the response to a set point is half of it, the heading
     gain a fifth. A known command delay counts as part of the motor lag in the model of the
     actuators. Goals: `surge_mps`, `sway_mps`, `yaw_radps`.
@@ -88,12 +87,6 @@ class LagJoystick(Outboards, CompiledController):
         unit="1/s",
         words="yaw rate demanded per heading error; default: a fifth of the bandwidth",
     )
-    motor_lag: float = param(
-        0.15, low=0.0, high=2.0, unit="s", words="known time constant of the motors"
-    )
-    command_delay: float = param(
-        0.0, low=0.0, high=2.0, unit="s", words="known delay of all commands"
-    )
     hold_rate: float = param(
         0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command"
     )
@@ -107,20 +100,10 @@ class LagJoystick(Outboards, CompiledController):
         1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
     )
 
-    def __post_init__(self) -> None:
-        """Derive the gains that are not given.
-
-        Raises:
-            BadInput: A parameter is out of bounds.
-        """
-        self.derive_gains()
-        super().__post_init__()
-
     def derive_gains(self) -> None:
         """Set the gains that are not given by the rule of this class."""
-        delay = 0.5 * self.period + self.command_delay + self.motor_lag + RESERVE
         if self.bandwidth is UNSET:
-            self.bandwidth = 0.5 / delay
+            self.bandwidth = bandwidth_for_delay(self.effective_delay())
         if self.pole is UNSET:
             self.pole = POLE_SHARE * self.bandwidth
         if self.heading_gain is UNSET:
@@ -136,7 +119,9 @@ class LagJoystick(Outboards, CompiledController):
 
     def operating_points(self) -> tuple[OperatingPoint, ...]:
         """Return the steady motions at which the controller's loops are analysed on a vessel."""
-        return joystick_operating_points(self, self.yaw_loop, self._loop("surge", 0.0, False))
+        return joystick_operating_points(
+            self, self.yaw_loop, self._loop("surge", 0.0, False), self.pole
+        )
 
     def yaw_loop(self, swaying: bool) -> FeedbackLoop:
         """Return the feedback of the yaw rate and of its integral, the heading.

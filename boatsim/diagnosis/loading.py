@@ -12,6 +12,7 @@ from boatsim.diagnosis.checks.accelerometer_clock import correct_pose_clock
 from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.checks.order_signs import restore_order_signs
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
 from boatsim.files import Value
@@ -101,6 +102,7 @@ def load_recordings(
             first = len(opened)
     report("checking the log", 1.0)
     check_same_vessel(own_vessels)
+    opened = restore_order_signs(opened, own_vessels[0], first)
     duration = data_cleaning.total_duration(opened)
     findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
     by_path: dict[Path | None, Vessel] = {}

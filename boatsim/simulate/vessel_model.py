@@ -5,6 +5,7 @@ from math import inf, sqrt
 import numpy as np
 
 from boatsim.control.base import Controller
+from boatsim.control.lag_design import LagBasedController
 from boatsim.control.thrust_allocation import (
     Thruster,
     azimuth_thruster,
@@ -78,7 +79,7 @@ def vessel_model(vessel: Vessel) -> VesselModel:
 
 
 def introduce_vessel(controller: Controller, vessel: Vessel) -> None:
-    """Give a controller that needs one a model of its vessel.
+    """Give a controller that needs it a model of its vessel, or the lag of its actuators.
 
     Args:
         controller: The controller.
@@ -89,6 +90,8 @@ def introduce_vessel(controller: Controller, vessel: Vessel) -> None:
     """
     if isinstance(controller, ModelBasedController):
         controller.use_vessel_model(vessel_model(vessel))
+    elif isinstance(controller, LagBasedController):
+        controller.use_command_lag(command_lag(vessel))
 
 
 def command_lag(vessel: Vessel) -> float:

@@ -342,7 +342,7 @@ def test_robustness_prints_and_writes_the_largest_value_survived(tmp_path: Path)
     ],
 )
 def test_tune_refuses_wrong_options(tmp_path: Path, option: str, value: str, hint: str) -> None:
-    words = ["tune", "l1_joystick_lag", "--vessel", "joystick_boat", option, value]
+    words = ["tune", "l1_joystick", "--vessel", "joystick_boat", option, value]
     result = boatsim(*words, "--out", str(tmp_path / "out"))
     assert result.exit_code == 2 and hint in result.stderr and not (tmp_path / "out").exists()
 

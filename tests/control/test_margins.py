@@ -8,9 +8,11 @@ import pytest
 from boatsim.control import margins
 from boatsim.control.adaptive import LoopChannel, PiecewiseConstant
 from boatsim.control.base import LowPass
+from boatsim.control.lag_design import RESERVE
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class
 from boatsim.physics.vessel import load_vessel
+from boatsim.simulate.vessel_model import introduce_vessel
 
 PERIOD, SERVO = 0.08, 0.06  # [s]
 YAW = LoopChannel(
@@ -127,8 +129,9 @@ def test_controller_without_channels_names_those_that_have() -> None:
         margins.stability_margins(load_class("controller", "open_loop")())
 
 
-def test_shipped_joystick_controller_prints_the_published_norm() -> None:
-    rows = margins.stability_margins(load_class("controller", "l1_joystick")())
+def test_joystick_controller_with_the_published_gains_prints_the_published_norm() -> None:
+    made = load_class("controller", "l1_joystick")(pole=1.4, yaw_bandwidth=2.0, heading_gain=0.2)
+    rows = margins.stability_margins(made)
     assert [r.norm for r in rows if r.channel == "yaw"][0] == pytest.approx(0.616, abs=5e-4)
     # with ideal actuators; the published 0.37, 0.32 and 0.22 s contain a lag of 0.06 s
     assert [round(r.delay_s, 2) for r in rows if r.channel == "yaw"] == [0.43, 0.37, 0.27]
@@ -136,10 +139,10 @@ def test_shipped_joystick_controller_prints_the_published_norm() -> None:
 
 def test_gains_from_lags_follow_the_simc_rule_and_meet_the_norm_condition() -> None:
     """S. Skogestad 2003: bandwidth 1 / (2 theta); at half the input gain the norm is 2 / e / pole."""
-    kind = load_class("controller", "l1_joystick_lag")
+    kind = load_class("controller", "l1_joystick")
     for lag, delay in ((0.15, 0.0), (0.8, 0.4)):
         made = kind(motor_lag=lag, command_delay=delay)
-        theta = 0.5 * made.period + lag + delay + 0.3
+        theta = 0.5 * made.period + lag + delay + RESERVE
         assert made.yaw_bandwidth == pytest.approx(0.5 / theta)
         norms = {r.channel: r.norm * r.needed for r in margins.stability_margins(made)[::-1]}
         assert norms["yaw"] == pytest.approx(2.0 / exp(1.0), abs=1e-3)
@@ -147,11 +150,41 @@ def test_gains_from_lags_follow_the_simc_rule_and_meet_the_norm_condition() -> N
 
 
 def test_gains_that_are_given_replace_those_of_the_rule() -> None:
-    made = load_class("controller", "l1_joystick_lag")(pole=0.7)
+    made = load_class("controller", "l1_joystick")(pole=0.7)
     assert made.pole == 0.7 and made.surge_bandwidth == pytest.approx(1.2 * 0.7)
-    assert made.yaw_bandwidth == load_class("controller", "l1_joystick_lag")().yaw_bandwidth
+    assert made.yaw_bandwidth == load_class("controller", "l1_joystick")().yaw_bandwidth
 
 
-def test_the_motor_lag_of_the_rule_is_that_of_the_scale_boat() -> None:
+def test_the_assumed_lag_of_the_rule_is_that_of_the_scale_boat() -> None:
     lag = load_vessel("joystick_boat").effect("thrust_lag")
-    assert load_class("controller", "l1_joystick_lag")().motor_lag == lag.time_constant
+    assert load_class("controller", "l1_joystick")().motor_lag == lag.time_constant
+
+
+@pytest.mark.parametrize("name", ["l1_joystick", "adrc", "indi", "lqi", "mpc"])
+def test_gains_follow_from_the_lags_and_delays_of_the_vessel(name: str) -> None:
+    lags = {"thrust_lag": {"time_constant": 0.3}}
+    slow = load_vessel("joystick_boat", (), lags, [{"use": "command_delay", "delay": 0.2}])
+    kind = load_class("controller", name)
+    made, known, told = kind(), kind(motor_lag=0.3, command_delay=0.2), kind(motor_lag=0.1)
+    for controller in (made, known, told):
+        introduce_vessel(controller, slow)
+    assert made.motor_lag == pytest.approx(0.5)
+    assert made.effective_delay() == pytest.approx(known.effective_delay())
+    assert told.motor_lag == 0.1
+    for gain in made.tuned or ("bandwidth", "pole", "heading_gain"):
+        assert getattr(made, gain) == pytest.approx(getattr(known, gain))
+        assert getattr(told, gain) > getattr(made, gain)
+    introduce_vessel(made, load_vessel("joystick_boat"))
+    assert made.settings_array() == kind().settings_array()
+
+
+def test_gains_that_are_given_do_not_follow_from_the_vessel() -> None:
+    slow = load_vessel("joystick_boat", (), {"thrust_lag": {"time_constant": 0.6}})
+    made = load_class("controller", "l1_joystick")(pole=0.4)
+    introduce_vessel(made, slow)
+    assert made.pole == 0.4 and made.yaw_bandwidth == pytest.approx(0.5 / (0.04 + 0.6 + RESERVE))
+
+
+def test_a_lag_beyond_the_bounds_of_the_design_is_one_clear_line() -> None:
+    with pytest.raises(BadInput, match=r"motor_lag = 12 s; allowed 0 to 10 s"):
+        load_class("controller", "l1_joystick")().use_command_lag(12.0)

@@ -444,7 +444,8 @@ def test_two_adaptive_laws_move_a_boat_alike() -> None:
     """Both low-pass filters have 2 rad/s; the difference is that of the zero of D(s) and of the
     commands, which are rounded to whole degrees."""
     rates = {}
-    for controller in (L1Joystick(), L1JoystickProjection()):
+    alike = {"pole": 1.4, "yaw_bandwidth": 2.0, "surge_bandwidth": 2.0, "heading_gain": 0.2}
+    for controller in (L1Joystick(**alike), L1JoystickProjection()):
         boat, seen = Turntable(push=0.03), list[float]()
         boat.run(controller, {"sway_mps": 0.07}, 20.0, seen=seen)
         rates[type(controller)] = seen

@@ -78,8 +78,8 @@ def test_one_design_is_the_former_one_and_is_not_called_better() -> None:
 
 
 def test_designs_without_the_norm_condition_cost_as_much_as_divergence() -> None:
-    assert meets_norm_condition(made("l1_joystick_lag"))
-    assert not meets_norm_condition(made("l1_joystick_lag", yaw_bandwidth=0.3, pole=0.51))
+    assert meets_norm_condition(made("l1_joystick"))
+    assert not meets_norm_condition(made("l1_joystick", yaw_bandwidth=0.3, pole=0.51))
     assert WORST > 1.0
 
 
@@ -88,8 +88,8 @@ def test_a_controller_that_describes_no_loops_is_not_judged_by_them() -> None:
 
 
 def test_ranges_are_within_the_bounds_of_the_parameters() -> None:
-    controller = made("l1_joystick_lag")
-    for gain in gain_ranges("l1_joystick_lag", controller, ()):
+    controller = made("l1_joystick")
+    for gain in gain_ranges("l1_joystick", controller, ()):
         bounds = type(controller).params()[gain.name]
         assert bounds.low <= gain.low < getattr(controller, gain.name) < gain.high <= bounds.high
 
@@ -106,7 +106,7 @@ def test_ranges_are_within_the_bounds_of_the_parameters() -> None:
 )
 def test_a_gain_that_cannot_be_tuned_is_refused_in_one_line(gains, words) -> None:
     with pytest.raises(BadInput, match=words) as error:
-        gain_ranges("l1_joystick_lag", made("l1_joystick_lag"), gains)
+        gain_ranges("l1_joystick", made("l1_joystick"), gains)
     assert "\n" not in str(error.value)
 
 

@@ -16,6 +16,7 @@ from boatsim.diagnosis.checks.interpolated_samples import (
     INTERPOLATED,
     drop_interpolated_samples,
 )
+from boatsim.diagnosis.checks.order_signs import REMARK as SIGN_LOST
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.position_times import LATE_BY_ROWS, correct_position_times
@@ -45,6 +46,7 @@ FINDING_OF_REMARK = {
     "were rotated with the heading": "positions_turned",
     "turns the hull to the other side": "rudder_sense",
     BEYOND_RANGE: "command_range",
+    SIGN_LOST: "order_signs",
 }
 
 RANGE_REMEDY = (

@@ -28,6 +28,8 @@ from boatsim.physics.base import Array, Effect, RandomForce
 
 # From the group of each row to the size of an effect on each group (K,), and its covariance (K, K)
 SizeOnParts = Callable[[NDArray[np.int_]], tuple[Array, Array]]
+# [nats] gain of an effect without which the vessel diverges: more than any recording tells
+DIVERGES = 1e6
 
 
 @dataclass(frozen=True)
@@ -343,11 +345,18 @@ def _held_out_factor(
 
 
 def _gain(problem: Problem, best: Fit, without: Fit) -> float:
-    """Return the log-likelihood that recordings gain by an effect [nats]."""
+    """Return the log-likelihood that recordings gain by an effect [nats].
+
+    A vessel that diverges from them has none: nothing is gained with it, and `DIVERGES` without.
+    """
     found = []
     for fit in (best, without):
         on = problem.program.effect_switches(fit.effects)
         found.append(problem.log_likelihood(fit.free, fit.theta, on, fit.levels))
+    if not np.isfinite(found[0]):
+        return 0.0
+    if not np.isfinite(found[1]):
+        return DIVERGES
     return found[0] - found[1]
 
 

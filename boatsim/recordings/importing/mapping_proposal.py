@@ -45,9 +45,11 @@ from boatsim.recordings.importing.track import (
     reason_poses_unusable,
     speed_unit,
     track_of,
+    values_in_si,
 )
-from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
+from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
 from boatsim.recordings.notes import unit_of
+from boatsim.recordings.order_signs import laws_of_unsigned_orders
 from boatsim.recordings.raw_table import file_error
 
 USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
@@ -73,6 +75,7 @@ FROM_ENU = {
 QUARTER_TURN = " + 90 * deg"  # heading from north = 90 degrees - yaw from east
 BY_ITS_RANGE = "by its range"  # end of the note on a unit that the range only suggests
 MOTION_COLUMNS = ("phi_rad", "theta_rad", *RATES)  # that a track may contradict
+EFFORT_COLUMNS = {"effort_x": "force_x_N", "effort_n": "force_n_Nm"}
 POSE_COLUMNS = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
 KINDS = {
     "angle": ("rad", "deg"),
@@ -459,6 +462,9 @@ def _command_lines(
         g, unit_note = unit.with_unit(g, drive)
         lines.append(_channel_line(drive.name, g, drive, sense) + unit_note + why)
     lines += _side_lines(drives, chosen, turning)
+    unsigned, efforts = _unsigned_order_lines(drives, chosen, best)
+    lines += unsigned
+    taken += efforts
     for g in moving:
         if g not in taken:
             lines.append(_unused_line(g, drives))
@@ -484,6 +490,36 @@ def _side_lines(
         "# CHECK: the boat turns to the other side than these commands ask for (correlation "
         f"{sense:+.2f}): are two drives exchanged, or is the heading counted counterclockwise?"
     ]
+
+
+def _unsigned_order_lines(
+    drives: Sequence[VesselChannel],
+    chosen: Mapping[str, tuple[Classification, str]],
+    best: Mapping[str, Sequence[Classification]],
+) -> tuple[list[str], list[Classification]]:
+    """Lines of the force and moment from which orders that lost their sign were computed."""
+    efforts = {kind: best[kind][0] for kind in EFFORT_COLUMNS if best.get(kind)}
+    if len(chosen) < len(drives) or len(efforts) < len(EFFORT_COLUMNS):
+        return [], []
+    signals = {name: values_in_si(g) for name, (g, _) in chosen.items()}
+    t = next(iter(signals.values()))[0]
+    if len(t) == 0:
+        return [], []
+    orders = {name: held_values(at, values, t) for name, (at, values) in signals.items()}
+    asked = [held_values(*values_in_si(efforts[kind]), t) for kind in EFFORT_COLUMNS]
+    laws = laws_of_unsigned_orders(orders, *asked)
+    if not laws:
+        return [], []
+    share = np.any([law.negative for law in laws.values()], axis=0).mean()
+    names = " and ".join(g.name for g, _ in chosen.values())
+    lines = [
+        f"# CHECK: {names} follow from the force and moment below, but are never negative, where",
+        f"# these ask for it in {100.0 * share:.2g} % of the rows. Did the drives push astern? A",
+        "# diagnosis decides by the motion and restores the signs.",
+    ]
+    for kind, g in efforts.items():
+        lines.append(f"{EFFORT_COLUMNS[kind]} = {toml_value(_expression(g))}")
+    return lines, list(efforts.values())
 
 
 class _RevolutionUnit:

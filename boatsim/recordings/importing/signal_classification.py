@@ -411,6 +411,19 @@ def _of_numbered(name: str, tokens: frozenset[str], log: Log) -> str | None:
     return None
 
 
+def effort_of_name(name: str) -> str:
+    """Return the kind of a force or moment that was asked for, by its name; "" for another signal.
+
+    Args:
+        name: Name of the signal, such as "tau_N".
+
+    Returns:
+        "effort_x", "effort_y" or "effort_n".
+    """
+    words = tokenize_name(name)
+    return _effort(words, frozenset(words)) or ""
+
+
 def _effort(words: Sequence[str], tokens: frozenset[str]) -> str | None:
     """The kind of a force or moment that was asked for; None for another signal."""
     if not tokens & EFFORTS or tokens & SENSED:

@@ -94,7 +94,7 @@ def track_of(best: Mapping[str, Sequence[Classification]]) -> Track | None:
                 continue
             east = EARTH_RADIUS * np.cos(np.median(north)) * (east - east[0])
             north = EARTH_RADIUS * (north - north[0])
-        return _track(t, north, east)
+        return track_of_positions(t, north, east)
     return None
 
 
@@ -111,7 +111,7 @@ def constant_heading_fault(t: Array, x: Array, y: Array, psi: Array) -> str:
     """
     if len(t) < 2 or not len(psi) or float(np.ptp(psi)) > 0.0:
         return ""
-    track = _track(t, x, y)
+    track = track_of_positions(t, x, y)
     if not track.moves or _is_course(float(psi[0]), track):
         return ""
     return (
@@ -120,7 +120,14 @@ def constant_heading_fault(t: Array, x: Array, y: Array, psi: Array) -> str:
     )
 
 
-def _track(t: Array, north: Array, east: Array) -> Track:
+def track_of_positions(t: Array, north: Array, east: Array) -> Track:
+    """Return the motion by positions.
+
+    Args:
+        t: Times (N,) [s], increasing.
+        north: Positions (N,) to the north [m].
+        east: Positions (N,) to the east [m].
+    """
     new = np.append(True, (np.diff(north) != 0.0) | (np.diff(east) != 0.0))
     extent = float(max(np.ptp(north), np.ptp(east)))
     noise = 0.0

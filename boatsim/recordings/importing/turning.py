@@ -132,14 +132,21 @@ def _best_delayed_correlation(
     followed = np.interp(rows, t, values)
     correlations = []
     for delay in DELAYS:
-        weighted = [weight * _held_values(g, rows - delay) for g, weight in signals]
+        weighted = [
+            weight * held_values(*_sorted_samples(g), rows - delay) for g, weight in signals
+        ]
         correlations.append(_correlation(np.asarray(np.sum(weighted, axis=0)), followed))
     return max(correlations, key=abs)
 
 
-def _held_values(g: Classification, rows: Array) -> Array:
-    """Values (N,) in force at the rows."""
-    t, values = _sorted_samples(g)
+def held_values(t: Array, values: Array, rows: Array) -> Array:
+    """Return the values in force at given times, those of the last sample before.
+
+    Args:
+        t: Times (N,) of the samples [s], increasing.
+        values: Samples (N,).
+        rows: Times (M,) [s].
+    """
     return np.asarray(values[np.searchsorted(t, rows, side="right").clip(min=1) - 1])
 
 
