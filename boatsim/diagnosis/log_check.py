@@ -1,7 +1,8 @@
 """Checks recordings without diagnosing them: what is wrong with each file."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 
 from boatsim.diagnosis.answer.log_entry import column_sources, finding_entry, join_toml_lines
@@ -12,6 +13,7 @@ from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding, has_result
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
+from boatsim.diagnosis.checks.order_signs import restore_order_signs
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings, check_same_vessel, vessel_of_recording_file
@@ -22,13 +24,21 @@ from boatsim.recordings.table import Recording, read
 
 
 @dataclass(frozen=True)
-class _Checked:
-    """Findings of one file, and its parts if these may be mapped to the vessel."""
+class _Opened:
+    """A file with the findings about its table, and its prepared parts."""
 
-    findings: tuple[Finding, ...] = ()
+    path: Path
+    table: tuple[Finding, ...]
     parts: tuple[Recording, ...] = ()
-    prepared: tuple[Recording, ...] = ()  # the same parts before cleaning
     refused: BadInput | None = None
+
+
+@dataclass(frozen=True)
+class _Checked:
+    """Findings of one file, and its cleaned parts if these may be mapped to the vessel."""
+
+    findings: tuple[Finding, ...]
+    parts: tuple[Recording, ...] = ()
 
 
 def check_files(
@@ -57,13 +67,14 @@ def check_files(
     check_same_vessel(list(vessels.values()))
     findings, refused, usable = list[Finding](), list[BadInput](), list[Recording]()
     prepared = list[Recording]()
-    for path in runs:
-        checked = _check_file(path, vessels[path])
+    for file in _with_order_signs([_open_file(path, vessels[path]) for path in runs], vessels):
+        if file.refused:
+            refused.append(file.refused)
+        checked = _check_file(file, vessels[file.path])
         findings += checked.findings
-        if checked.refused:
-            refused.append(checked.refused)
         usable += checked.parts
-        prepared += checked.prepared
+        if checked.parts:
+            prepared += file.parts
     findings += check_clock_rate(prepared, DEFAULT.checks)
     if usable:
         try:
@@ -88,29 +99,45 @@ def check_files(
     return entries, refused
 
 
-def _check_file(path: Path, vessel: Vessel) -> _Checked:
-    """Check one file."""
-    table: list[Finding] = []
+def _open_file(path: Path, vessel: Vessel) -> _Opened:
+    """Check the table of a file, and prepare its parts."""
+    table: tuple[Finding, ...] = ()
     try:
-        table = list(run_checks.check_table(path, vessel, DEFAULT.checks))
-        opened = []
+        table = tuple(run_checks.check_table(path, vessel, DEFAULT.checks))
+        parts = []
         for part in read(path, vessel.recorded_limits(), vessel.columns, vessel.turns_over).parts():
-            opened.append(data_cleaning.prepare_recording(part, vessel, DEFAULT.checks))
+            parts.append(data_cleaning.prepare_recording(part, vessel, DEFAULT.checks))
     except BadInput as error:
-        return _Checked(tuple(table), refused=None if table else error)
-    duration = data_cleaning.total_duration(opened)
-    findings, parts = list(table), list[Recording]()
-    for number, part in enumerate(opened, 1):
+        return _Opened(path, table, refused=None if table else error)
+    return _Opened(path, table, tuple(parts))
+
+
+def _with_order_signs(
+    files: Sequence[_Opened], vessels: Mapping[Path | None, Vessel]
+) -> list[_Opened]:
+    """The files, with the signs that orders of their parts have lost."""
+    every = [part for file in files for part in file.parts]
+    if not every:
+        return list(files)
+    restored = iter(restore_order_signs(every, vessels[files[0].path], len(every)))
+    return [replace(file, parts=tuple(islice(restored, len(file.parts)))) for file in files]
+
+
+def _check_file(file: _Opened, vessel: Vessel) -> _Checked:
+    """Check the parts of one file."""
+    duration = data_cleaning.total_duration(file.parts)
+    findings, cleaned_parts = list(file.table), list[Recording]()
+    for number, part in enumerate(file.parts, 1):
         cleaned = data_cleaning.clean_recording(part, vessel, duration)
         findings += run_checks.check_recording(part, cleaned, vessel, DEFAULT.checks)
         findings += run_checks.check_identifiability(part, vessel, DEFAULT.checks)
-        name = str(path)
-        if len(opened) > 1:
-            name = f"{path} (part {number})"
-        parts.append(replace(cleaned, name=name))
-    if table:
+        name = str(file.path)
+        if len(file.parts) > 1:
+            name = f"{file.path} (part {number})"
+        cleaned_parts.append(replace(cleaned, name=name))
+    if file.table:
         return _Checked(tuple(findings))
-    return _Checked(tuple(findings), tuple(parts), tuple(opened))
+    return _Checked(tuple(findings), tuple(cleaned_parts))
 
 
 def correction_hint(

@@ -100,7 +100,7 @@ def order_law(values: Array, force: Array, moment: Array) -> OrderLaw:
 
 
 def _fitted_law(values: Array, force: Array, moment: Array, squared: bool) -> OrderLaw:
-    """Least squares over the half of the rows that the law meets best; others may lack their sign."""
+    """Least squares over the rows that the law meets best; the others may lack their sign."""
     wanted = values**2 if squared else values
     design = np.column_stack([force, moment])
     top = float(np.max(wanted))
@@ -112,7 +112,8 @@ def _fitted_law(values: Array, force: Array, moment: Array, squared: bool) -> Or
     found = np.zeros(2)
     for _ in range(REFITS):
         before = kept
-        found = np.linalg.lstsq(design[kept], wanted[kept], rcond=None)[0]
+        solved = np.linalg.lstsq(design[kept], wanted[kept], rcond=None)[0]
+        found = np.array(solved, dtype=np.float64)
         error = np.abs(wanted[rows] - design[rows] @ found)
         scatter = max(float(np.median(error)), EXACT * top)
         kept = rows[error <= scatter]

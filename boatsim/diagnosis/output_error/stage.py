@@ -61,13 +61,18 @@ def fit_to_simulations(
         only_stated = _without_effects(problem, ranking.best, kept)
         simple = OutputErrorSearch(problem, only_stated, held_out, kept, budget)
         simple.start_from(_with_coefficients_of_file(only_stated))
-    corrected = _better_start(ranking, simple, kept, contradicted)
-    corrected.add_effects(candidates)
+    before = simple.model
+    simple.add_effects(candidates)
+    others = [name for name in ranking.best.effects if name not in contradicted]
+    corrected = simple.model
+    if set(others) != set(kept):
+        start = _without_effects(problem, ranking.best, others)
+        corrected = _better_of_selected(simple, before, start, candidates)
     found = ranking
     if better:
         found = _with_retuned(problem, ranking, retuned, held_out)
-    if _is_clearly_better(problem, corrected.model, found.best, held_out):
-        found = _with_corrected(found, corrected.model, contradicted)
+    if _is_clearly_better(problem, corrected, found.best, held_out):
+        found = _with_corrected(found, corrected, contradicted)
     return found
 
 
@@ -111,29 +116,34 @@ def _is_clearly_better(
     return not generalization.harmed_groups(problem, reference, found, held_out, horizon)
 
 
-def _better_start(
-    ranking: Ranking,
-    simple: OutputErrorSearch,
-    kept: Sequence[str],
-    contradicted: Sequence[str],
-) -> OutputErrorSearch:
-    """The better start for further effects: all that the filter selected, or what is stated.
+def _better_of_selected(
+    simple: OutputErrorSearch, before: Fit, start: Fit, candidates: Sequence[str]
+) -> Fit:
+    """The better of two vessels: by a search from few effects, and from all the filter selected.
 
-    What the filter selected is no start if simulations of a group of recordings get much worse by
-    it, because later steps are compared with the start.
+    Each search adds one effect at a time and is led by its start. What the filter selected is no
+    start if simulations of a group of recordings get much worse by it, because later steps are
+    compared with the start.
+
+    Args:
+        simple: The search from the effects that are stated as causes, completed.
+        before: Its vessel before effects were added.
+        start: The vessel with all effects that the filter selected.
+        candidates: Names of the candidates that may be added.
     """
-    others = [name for name in ranking.best.effects if name not in contradicted]
-    if set(others) == set(kept):
-        return simple
     problem, held_out = simple.problem, simple.held_out
-    start = _without_effects(problem, ranking.best, others)
-    whole = OutputErrorSearch(problem, start, held_out, kept, simple.budget)
+    if simple.budget.is_spent:
+        return simple.model
+    whole = OutputErrorSearch(problem, start, held_out, simple.fixed_effects, simple.budget)
     whole.drop_effects()
-    if whole.held_out_ratio(simple.model) <= 1.0 or generalization.harmed_groups(
+    if generalization.harmed_groups(problem, before, whole.model, held_out, whole.horizon):
+        return simple.model
+    whole.add_effects(candidates)
+    if simple.held_out_ratio(whole.model) < 1.0 and not generalization.harmed_groups(
         problem, simple.model, whole.model, held_out, whole.horizon
     ):
-        return simple
-    return whole
+        return whole.model
+    return simple.model
 
 
 def _with_coefficients_of_file(found: Fit) -> Fit:
