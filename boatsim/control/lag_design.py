@@ -78,6 +78,10 @@ class LagBasedController(Controller):
         """Set the gains that are not given; the lag is known."""
         raise NotImplementedError
 
+    def known_delay(self) -> float:
+        """Return the known delay of the loops [s]: half a period and the lags of the vessel."""
+        return 0.5 * self.period + self.command_delay + self.motor_lag
+
     def effective_delay(self) -> float:
-        """Return the effective delay of the loops [s]: known lags, half a period and a reserve."""
-        return 0.5 * self.period + self.command_delay + self.motor_lag + RESERVE
+        """Return the effective delay of the loops [s]: the known one and a reserve."""
+        return self.known_delay() + RESERVE

@@ -7,6 +7,7 @@ import pytest
 
 from boatsim.control.base import Sense
 from boatsim.control.compiled import CompiledController
+from boatsim.control.lag_design import RESERVE
 from boatsim.control.linear_quadratic import (
     IntegralGains,
     closed_loop_poles,
@@ -57,7 +58,7 @@ def turn(
 @pytest.mark.parametrize("name", RIVALS)
 def test_the_gains_follow_from_the_known_lag(name: str) -> None:
     made = controller(name, motor_lag=0.15, command_delay=0.0)
-    theta = 0.5 * made.period + 0.15 + 0.3
+    theta = 0.5 * made.period + 0.15 + RESERVE
     assert made.bandwidth == pytest.approx(0.5 / theta)
     assert made.pole == pytest.approx(0.5 * made.bandwidth)
     slower = controller(name, motor_lag=0.15, command_delay=0.4)

@@ -2,7 +2,7 @@ import random
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from math import cos, degrees, nan, pi, radians, sin
+from math import cos, degrees, exp, nan, pi, radians, sin
 from typing import Any
 
 import pytest
@@ -327,6 +327,16 @@ def test_surge_command_with_a_speed_sensor_is_held(controller: Any) -> None:
         u += 0.08 * (thrust - 0.02 * u - 2.5 * u * abs(u)) / 4.8
         speeds.append(u)
     assert sum(speeds[-200:]) / 200 == pytest.approx(0.1, rel=0.02)
+
+
+@pytest.mark.parametrize("pole", [0.5, 1.4])
+def test_response_to_the_stick_has_its_own_pole(pole: float) -> None:
+    """Without heading feedback, on a boat with the pole of the predictor."""
+    controller = L1Joystick(response_pole=pole, pole=0.5, heading_gain=0.0)
+    boat, seen = Turntable(damping=0.5 * controller.inertia), list[float]()
+    boat.run(controller, {"yaw_radps": 0.05}, 4.0, seen=seen)
+    expected = [0.05 * (1.0 - exp(-pole * 0.08 * k)) for k in range(len(seen))]
+    assert max(abs(a - b) for a, b in zip(seen, expected, strict=True)) < 0.03 * 0.05
 
 
 @RIVALS

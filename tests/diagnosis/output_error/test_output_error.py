@@ -14,7 +14,7 @@ from boatsim.diagnosis.output_error.errors import output_errors
 from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.output_error.search import OutputErrorSearch
 from boatsim.diagnosis.output_error.stage import (
-    _better_start,
+    _better_of_selected,
     _with_corrected,
     contradicted_effects,
     fit_to_simulations,
@@ -176,11 +176,24 @@ def test_a_start_that_harms_a_group_of_recordings_is_not_taken(other_day: str) -
         mapped = map_recording(sail(f"{day} {seed}", seed, missing)[0], problem.program)
         held_out.append(replace(mapped, groups=(day,)))
     effect = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN})
-    ranking = select_and_rank_candidates(problem, ("weak_reverse",), held_out)
-    ranking = replace(ranking, best=effect, named=())
     simple = OutputErrorSearch(problem, retuned, held_out)
-    start = _better_start(ranking, simple, (), ()).model
-    assert ("weak_reverse" in start.effects) is (other_day == "odd_and_weak_astern")
+    found = _better_of_selected(simple, simple.model, effect, ())
+    assert ("weak_reverse" in found.effects) is (other_day == "odd_and_weak_astern")
+
+
+def test_of_two_searches_the_vessel_that_predicts_better_is_kept() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    selected = add_effect(problem, retuned, "prop_walk", {"side_force_per_thrust": 0.1})
+    simple = OutputErrorSearch(problem, retuned, held_out)
+    before = simple.model
+    assert "prop_walk" not in before.effects
+    simple.add_effects(("weak_reverse",))
+    assert simple.model.effects == ("weak_reverse",)
+    assert _better_of_selected(simple, before, selected, ()) is simple.model
+    astern = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN})
+    less = OutputErrorSearch(problem, retuned, held_out)
+    assert _better_of_selected(less, less.model, astern, ()).effects == ("weak_reverse",)
 
 
 def test_nothing_is_added_once_the_budget_is_spent() -> None:
