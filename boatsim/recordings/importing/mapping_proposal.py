@@ -27,6 +27,7 @@ from boatsim.recordings.importing.several_logs import (
 )
 from boatsim.recordings.importing.signal_classification import (
     HELM,
+    ORDERED,
     PULSE,
     UNKNOWN_BODY,
     Body,
@@ -59,7 +60,9 @@ MAX_LISTED = 400
 # and the largest ratio of speeds that a vessel file, a current and acceleration may cause
 MIN_UNIT_EXCESS, MIN_UNIT_SHARE, MAX_UNIT_EXCESS = 3.0, 0.1, 1.5
 MAX_SPEED_RATIO = 3.0
+MANY_DRIVES = 3  # from which on drives are matched by number: sides no longer tell them apart
 SPEED_PERCENTILE = 75.0  # [%] of revolutions and speeds that are compared
+ALL_AROUND = 3.1  # [rad] to each side: a thruster that turns around, whose angle may be counted on
 HELM_EXCESS = 1.05  # a wheel that turns farther than the rudder by more than this is geared to it
 # Column -> column of the signal and sign, for logs with z up (ROS, REP 103: x east, y north; x
 # forward, y port)
@@ -536,11 +539,15 @@ class _RevolutionUnit:
     def with_unit(self, g: Classification, drive: VesselChannel) -> tuple[Classification, str]:
         """Return a signal with the unit that it shows, and what the owner must check."""
         stated = g.signal.unit or g.word or _unit(g)
-        if stated or unit_of(drive.name) != "rad/s" or g.name == drive.name:
+        if stated or g.name == drive.name:
             return g, ""
         size = float(np.nanmax(np.abs(g.signal.values)))
         limit = max(abs(drive.low), abs(drive.high))
-        if size < MIN_UNIT_EXCESS * limit:
+        unit = unit_of(drive.name)
+        excess = size > MAX_UNIT_EXCESS * limit and _scale(g, g.signal.values, drive) is None
+        if unit in KINDS["force"] and excess:
+            return g, f"; CHECK: as {unit} up to {size / limit:.2g} times the vessel's range"
+        if unit != "rad/s" or size < MIN_UNIT_EXCESS * limit:
             return g, ""
         rpm = UNITS["rpm"]
         by_size = MIN_UNIT_SHARE * limit < size * rpm < MAX_UNIT_EXCESS * limit
@@ -584,8 +591,12 @@ def _match_channels(
     moving: Sequence[Classification],
     turning: Turning,
 ) -> dict[str, tuple[Classification, str]]:
-    """Signals of the channels by name, motion or order, and what the user must check."""
-    found = _with_note(_match_by_name(drives, moving), "")
+    """Signals of the channels by number, name, motion or order, and what the user must check."""
+    found: dict[str, tuple[Classification, str]] = {}
+    for group in ([d for d in drives if _steers(d)], [d for d in drives if not _steers(d)]):
+        found |= _match_by_number(group, _unassigned(moving, found))
+    unnumbered = [d for d in drives if d.name not in found]
+    found |= _with_note(_match_by_name(unnumbered, _unassigned(moving, found)), "")
     helms = [d for d in drives if d.name not in found and _steers(d)]
     if helms:
         named: list[Classification] = []
@@ -669,6 +680,38 @@ def _match_by_order(
     for drive, g in zip(missing, left, strict=False):
         if _units_are_compatible(drive, g) or _is_thrust_by_revolutions(drive, g):
             found[drive.name] = (g, why)
+    return found
+
+
+def _match_by_number(
+    drives: Sequence[VesselChannel], signals: Sequence[Classification]
+) -> dict[str, tuple[Classification, str]]:
+    """Signals of many drives of one kind that differ in one number, in the order of the drives.
+
+    Orders go before what a drive reports. Names with a side, and one or two drives, are matched
+    otherwise.
+    """
+    if len(drives) < MANY_DRIVES:
+        return {}
+    families: dict[str, dict[int, Classification]] = {}
+    for g in signals:
+        numbers = re.findall(r"\d+", g.name)
+        if len(numbers) == 1 and not side_from_tokens(g.tokens):
+            families.setdefault(re.sub(r"\d+", "#", g.name), {})[int(numbers[0])] = g
+    best: list[list[Classification]] = []
+    for family in families.values():
+        order = [family[number] for number in sorted(family)]
+        consecutive = max(family) - min(family) == len(drives) - 1
+        alike = all(bool(g.tokens & HELM) == _steers(drives[0]) for g in order)
+        matching = len(order) == len(drives) and consecutive and alike
+        if matching and all(map(_units_are_compatible, drives, order)):
+            best.append(order)
+    ordered = [order for order in best if order[0].tokens & ORDERED] or best
+    if len(ordered) != 1:
+        return {}
+    found = {}
+    for drive, g in zip(drives, ordered[0], strict=True):
+        found[drive.name] = (g, "; CHECK: by number, in the order of the vessel's drives")
     return found
 
 
@@ -846,7 +889,7 @@ def _scale(
         return _Scale((-largest, 0.0, largest), why, 2.0)
     span = max(abs(drive.low), abs(drive.high))
     if g.word == "deg" and unit_of(drive.name) == "rad":
-        if np.radians(largest) <= HELM_EXCESS * span:
+        if span > ALL_AROUND or np.radians(largest) <= HELM_EXCESS * span:
             return None
         why = "the wheel turns farther than the rudder; CHECK: full wheel, here the largest angle"
         return _Scale((-largest, 0.0, largest), why)

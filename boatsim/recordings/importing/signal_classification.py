@@ -53,6 +53,8 @@ OUTPUTS = set(
     "steer steering motor motors pwm nozzle azimuth azi prop "
     "propeller rpm rps shaft esc helm delta jet wheel tiller".split()
 )
+ORDERED = set("reference ref setpoint sp desired des cmd command commanded order ordered".split())
+THRUSTS = set("throttle thrust rpm rps power".split())
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
 HELM = set("rudder steer steering nozzle azimuth azi helm delta jet angle pos wheel tiller".split())
@@ -98,6 +100,7 @@ NUMBERED = {
 ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".split())
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 LEAST_SCALED = 1e5  # [1e-7 deg] 0.01 degrees; smaller numbers are of no place in this unit
+FULL_CIRCLE = 360.0  # [deg] largest order to a thruster that turns around
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -249,6 +252,8 @@ def classify_signal(
     if effort and not _is_load(tokens, body):
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
+    if kind is None and _is_direction_order(name, tokens, log):
+        kind, tokens = "command", tokens | {"steer"}
     called = names_channel(name, body.channels)
     if name in body.channels or is_command(name) or called or _is_load(tokens, body):
         kind = "command"
@@ -288,8 +293,10 @@ def _is_load(tokens: frozenset[str], body: Body) -> bool:
 
 def _most_degrees(tokens: frozenset[str]) -> float:
     """The largest number that may be an angle of a rudder or of a steering wheel [deg]."""
-    if "wheel" in tokens:
+    if tokens & {"wheel", "azimuth", "azi"}:  # these turn around, and may be counted on
         return MAX_WHEEL
+    if "angle" in tokens:
+        return FULL_CIRCLE
     return 90.0
 
 
@@ -363,6 +370,18 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
     if tokens & SENSED and not tokens & {"cmd", "command", "commanded"}:
         return "actual"
     return "command"
+
+
+def _is_direction_order(name: str, tokens: frozenset[str], log: Log) -> bool:
+    """Whether a signal is the order of an angle next to one of a thrust, in a stream of a drive."""
+    if "angle" not in tokens or not tokens & ORDERED or tokens & OTHER:
+        return False
+    stream = name.rpartition(".")[0]
+    for other in log.signals:
+        if stream and other != name and other.rpartition(".")[0] == stream:
+            if frozenset(tokenize_name(other)) & THRUSTS:
+                return True
+    return False
 
 
 def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
