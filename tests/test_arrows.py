@@ -25,7 +25,7 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     " control.differential "
     "control.motor_check control.operating_points control.passive_observer control.quadratic_program "
     "control.reference_motion control.thrust_allocation control.vessel_model control.dynamic_positioning "
-    "control.guidance control.lag_joystick control.linear_model control.linear_quadratic control.paths "
+    "control.guidance control.lag_design control.lag_joystick control.linear_model control.linear_quadratic control.paths "
     "control.planned_path control.receding_horizon "
     # of trained policies: what they observe, computed from a motion
     "learn.policy learn.hull learn.tasks.base learn.tasks.berth learn.tasks.follow_path learn.tasks.hold_station "

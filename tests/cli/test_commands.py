@@ -290,7 +290,7 @@ def test_list_has_a_line_about_everything(kind: str) -> None:
 
 
 def test_margins_prints_the_l1_norm_of_the_yaw_channel() -> None:
-    result = boatsim("margins", "l1_joystick")
+    result = boatsim("margins", "l1_joystick_sway")
     assert result.exit_code == 0 and "0.616" in result.stdout
     assert "nominal boat with ideal actuators" in result.stdout and "--vessel" in result.stdout
     assert "did you mean 'l1_joystick'" in boatsim("margins", "l1_joystik").stderr

@@ -11,7 +11,7 @@ from boatsim.physics.native.build import SlowCompilationWarning
 
 COMMAND_LINE = """
 import warnings
-from boatsim.cli import commands
+from boatsim.cli import application
 from boatsim.physics.native.build import NoCompiler, warn_of_slow_compilation
 
 def app():
@@ -19,8 +19,8 @@ def app():
         warn_of_slow_compilation(NoCompiler("no C\\ncompiler"))
     raise SystemExit(0)
 
-commands.app = app
-commands.main()
+application.app = app
+application.main()
 """
 
 
