@@ -434,7 +434,7 @@ def run(
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
     >>> rms = done.metrics["yaw_rate_rms"]
     >>> f"{rms.value:.2f} {rms.unit}", done.ok
-    ('0.18 deg/s', True)
+    ('0.20 deg/s', True)
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """

@@ -67,7 +67,8 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     """
     for b in boats:
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
-        faster, step = q.response_pole, 1.0 - exp(-q.response_pole * q.period)
+        faster = max(q.response_pole, q.pole)
+        step = 1.0 - exp(-faster * q.period)
         moment = yaw_moment(q, m, s, g.yaw_radps)
         moment += response_force(q.inertia, q.pole, faster, g.yaw_radps, m.r)
         surge = surge_force(q, m, s, g.surge_mps)
@@ -92,7 +93,8 @@ class L1Joystick(LagBasedController, AdaptiveJoystick):
     yaw is 1 / (2 theta), that of the SIMC rule for an integrating process (S. Skogestad, Journal of
     Process Control 13, 2003). The pole is half of it, the low-pass in surge 1.2 times the pole, and
     the heading gain a fifth of the bandwidth. The response to the stick is a feed-forward and needs
-    no reserve for unknown delays: its pole follows from the same rule without the 0.33 s.
+    no reserve for unknown delays: its pole follows from the same rule without the 0.33 s, up to the
+    1.4 1/s of the scale boat's reference motion, and is never below that of the loop.
     """
 
     words: ClassVar[str] = (

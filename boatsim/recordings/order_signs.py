@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from boatsim.physics.base import Array
 
+# Kind of an asked-for force ahead or moment to starboard -> its usual column of a recording
+EFFORT_COLUMNS = {"effort_x": "force_x_N", "effort_n": "force_n_Nm"}
 EXACT = 0.01  # of the range: a computed order differs from its law by rounding only
 MIN_EXACT_SHARE = 0.8  # of the rows with a positive order, that the law must meet
 REFITS = 10  # at most, each to the rows that the law before met
@@ -30,7 +32,7 @@ class OrderLaw:
         squared: Whether the order enters as its square, as a shaft rate does.
         sums: a X + b N (N,) in the rows of the order.
         range: Largest size of the order, squared if it enters so.
-        exact: Share of the rows with a positive order that the law meets.
+        exact: Share of the rows with a positive order and a positive law that it meets.
     """
 
     a: float
@@ -51,13 +53,13 @@ class OrderLaw:
             return values * np.abs(values)
         return values
 
-    def with_sign(self, values: Array) -> Array:
-        """Return orders (N,), by the law in the rows in which they differ from it."""
+    def with_sign(self, values: Array, rows: NDArray[np.bool_]) -> Array:
+        """Return orders (N,), by the law in those of the given rows (N,) that differ from it."""
         lawful = self.sums
         if self.squared:
             lawful = np.sign(lawful) * np.sqrt(np.abs(lawful))
         differs = np.abs(self.force(values) - self.sums) > EXACT * self.range
-        return np.where(differs, lawful, values)
+        return np.where(differs & rows, lawful, values)
 
 
 def laws_of_unsigned_orders(
@@ -82,9 +84,18 @@ def laws_of_unsigned_orders(
         if law.exact < MIN_EXACT_SHARE or law.a <= 0.0:
             return {}
         laws[name] = law
-    if not laws or np.any([law.negative for law in laws.values()], axis=0).sum() < MIN_NEGATIVE:
+    if not laws or rows_without_sign(laws).sum() < MIN_NEGATIVE:
         return {}
     return laws
+
+
+def rows_without_sign(laws: Mapping[str, OrderLaw]) -> NDArray[np.bool_]:
+    """Return the rows (N,) in which an order should be negative.
+
+    Args:
+        laws: Name of each order -> its law, at least one.
+    """
+    return np.asarray(np.any([law.negative for law in laws.values()], axis=0))
 
 
 def order_law(values: Array, force: Array, moment: Array) -> OrderLaw:
@@ -121,7 +132,7 @@ def _fitted_law(values: Array, force: Array, moment: Array, squared: bool) -> Or
             break
     sums = design @ found
     sums = np.where(np.isfinite(sums), sums, wanted)  # unknown: as logged
-    positive = (wanted > EXACT * top) & (sums > 0.0)
+    positive = (wanted > EXACT * top) & (sums > 0.0) & np.isfinite(design).all(axis=1)
     exact = np.abs(wanted - sums)[positive] < EXACT * top
     share = float(exact.mean()) if positive.sum() >= MIN_ROWS else 0.0
     return OrderLaw(float(found[0]), float(found[1]), squared, sums, top, share)

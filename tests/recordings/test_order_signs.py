@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
-from boatsim.recordings.order_signs import laws_of_unsigned_orders, order_law
+from boatsim.recordings.order_signs import (
+    laws_of_unsigned_orders,
+    order_law,
+    rows_without_sign,
+)
 
 RNG = np.random.default_rng(7)
 FORCE = np.repeat(RNG.uniform(-40.0, 120.0, 60), 20)  # [N]
@@ -41,15 +45,20 @@ def test_lost_signs_are_restored_by_force_and_moment(orders: dict[str, np.ndarra
     for name, law in laws.items():
         assert law.squared and law.a == pytest.approx(0.5 / GAIN, rel=1e-3)
         assert np.array_equal(law.negative, TRUE[name] < -np.sqrt(0.01 * law.range))
-        off = law.force(law.with_sign(orders[name])) - law.force(TRUE[name])
+        off = law.force(law.with_sign(orders[name], rows_without_sign(laws))) - law.force(
+            TRUE[name]
+        )
         assert np.abs(off).max() <= 0.01 * law.range
 
 
 def test_rounded_orders_keep_their_logged_values_where_they_follow_the_law() -> None:
     orders = {name: np.round(np.abs(values), 1) for name, values in TRUE.items()}
-    for name, law in laws_of_unsigned_orders(orders, FORCE, MOMENT).items():
+    laws = laws_of_unsigned_orders(orders, FORCE, MOMENT)
+    for name, law in laws.items():
         ahead = TRUE[name] > 0.0
-        assert np.array_equal(law.with_sign(orders[name])[ahead], orders[name][ahead])
+        assert np.array_equal(
+            law.with_sign(orders[name], rows_without_sign(laws))[ahead], orders[name][ahead]
+        )
 
 
 def test_thrusts_are_recognised_as_such() -> None:
@@ -61,9 +70,13 @@ def test_thrusts_are_recognised_as_such() -> None:
 def test_force_and_moment_that_are_not_known_leave_the_orders_as_they_are() -> None:
     force = np.where(np.arange(len(FORCE)) % 3 == 0, np.nan, FORCE)
     orders = LOGGED["size"]
-    for name, law in laws_of_unsigned_orders(orders, force, MOMENT).items():
+    laws = laws_of_unsigned_orders(orders, force, MOMENT)
+    assert laws
+    for name, law in laws.items():
         unknown = np.isnan(force)
-        assert np.array_equal(law.with_sign(orders[name])[unknown], orders[name][unknown])
+        assert np.array_equal(
+            law.with_sign(orders[name], rows_without_sign(laws))[unknown], orders[name][unknown]
+        )
 
 
 @pytest.mark.parametrize(
@@ -80,4 +93,22 @@ def test_force_and_moment_that_are_not_known_leave_the_orders_as_they_are() -> N
     ],
 )
 def test_other_orders_have_lost_nothing(orders: dict[str, np.ndarray], force: np.ndarray) -> None:
+    assert laws_of_unsigned_orders(orders, force, MOMENT) == {}
+
+
+def test_saturated_orders_ahead_are_not_changed() -> None:
+    most = 0.8 * max(values.max() for values in TRUE.values())
+    orders = {name: np.minimum(values, most) for name, values in LOGGED["size"].items()}
+    laws = laws_of_unsigned_orders(orders, FORCE, MOMENT)
+    assert laws
+    ahead = np.all([values > 0.0 for values in TRUE.values()], axis=0)
+    for name, law in laws.items():
+        after = law.with_sign(orders[name], rows_without_sign(laws))
+        assert np.array_equal(after[ahead], orders[name][ahead])
+
+
+def test_rows_without_force_and_moment_are_no_evidence_of_a_law() -> None:
+    rng = np.random.default_rng(1)
+    orders = {name: rng.uniform(1.0, 90.0, len(FORCE)) for name in TRUE}
+    force = np.where(rng.uniform(size=len(FORCE)) < 0.15, FORCE, np.nan)
     assert laws_of_unsigned_orders(orders, force, MOMENT) == {}

@@ -448,8 +448,8 @@ def test_lqi_is_designed_from_the_file_of_a_linear_model(tmp_path: Path) -> None
         assert getattr(made, name) == pytest.approx(getattr(own, name), rel=1e-6), name
 
 
-def test_default_gains_of_lqi_are_unchanged() -> None:
-    made: Any = load_class("controller", "lqi")()
+def test_gains_of_lqi_at_one_bandwidth_are_unchanged() -> None:
+    made: Any = load_class("controller", "lqi")(bandwidth=0.5 / 0.49)
     assert made.yaw_integral == pytest.approx(0.999694354011933, rel=1e-9)
     assert made.yaw_velocity == pytest.approx(2.1440619493551965, rel=1e-9)
     assert made.surge_velocity == pytest.approx(5.360154873388217, rel=1e-9)

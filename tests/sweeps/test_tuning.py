@@ -98,8 +98,8 @@ def test_ranges_are_within_the_bounds_of_the_parameters() -> None:
     ("gains", "words"),
     [
         ([("pole_", None, None)], "did you mean 'pole'"),
-        ([("pole", 0.6, 2.0)], "that contains 0.5"),
-        ([("pole", 0.01, 2.0)], "within 0.1:10"),
+        ([("pole", 0.6, 2.0)], "that contains 0.48"),
+        ([("pole", 0.001, 2.0)], "within 0.01:10"),
         ([("compass_trust", None, None)], "compass_trust"),  # zero has no logarithm
         ([("period", None, None)], "period"),
     ],

@@ -14,7 +14,13 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.signal_classification import effort_of_name
 from boatsim.recordings.importing.track import track_of_positions
 from boatsim.recordings.importing.turning import DELAYS
-from boatsim.recordings.order_signs import MIN_ROWS, OrderLaw, laws_of_unsigned_orders
+from boatsim.recordings.order_signs import (
+    EFFORT_COLUMNS,
+    MIN_ROWS,
+    OrderLaw,
+    laws_of_unsigned_orders,
+    rows_without_sign,
+)
 from boatsim.recordings.table import Recording
 
 # [nats] by which the surge acceleration must be more probable with the signs: odds of 20 to one,
@@ -59,7 +65,10 @@ def _laws(recording: Recording, vessel: Vessel) -> dict[str, OrderLaw]:
         kind = effort_of_name(name)
         if kind and name not in vessel.commands:
             efforts.setdefault(kind, values)
-    if not {"effort_x", "effort_n"} <= efforts.keys():
+    for kind, name in EFFORT_COLUMNS.items():  # the usual names go before similar ones
+        if name in recording.signals:
+            efforts[kind] = recording.signals[name]
+    if not EFFORT_COLUMNS.keys() <= efforts.keys():
         return {}
     orders = {name: recording.signals[name] for name in vessel.commands}
     return laws_of_unsigned_orders(orders, efforts["effort_x"], efforts["effort_n"])
@@ -78,9 +87,11 @@ def gain_of_signs(recording: Recording, laws: Mapping[str, OrderLaw]) -> float:
         return 0.0
     t, speed, acceleration = _surge_motion(recording)
     logged, signed = np.zeros(len(recording.t)), np.zeros(len(recording.t))
+    rows = rows_without_sign(laws)
     for name, law in laws.items():
-        logged += law.force(recording.signals[name])
-        signed += law.sums
+        values = recording.signals[name]
+        logged += law.force(values)
+        signed += law.force(law.with_sign(values, rows))
     evidence = []
     for force in (signed, logged):
         evidence.append(_response_evidence(force, recording.t, t, speed, acceleration))
@@ -102,7 +113,8 @@ def _response_evidence(
         response = np.column_stack([without, force[rows[inside]]])
         size, fitted = _residual(without, a)[0], _residual(response, a)
         if fitted[1] > 0.0 and 0.0 < fitted[0] < size:
-            independent = float(np.ptp(t[inside])) / SPEED_SPAN  # of differences over that span
+            # differences over one span are independent; times without positions do not count
+            independent = len(np.unique(np.floor(t[inside] / SPEED_SPAN)))
             most = max(most, 0.5 * independent * float(np.log(size / fitted[0])))
     return most
 
@@ -137,12 +149,13 @@ def _restored(recording: Recording, laws: Mapping[str, OrderLaw], gain: float) -
     if not laws:
         return recording
     signals, changed = dict(recording.signals), np.zeros(len(recording.t), dtype=bool)
+    rows = rows_without_sign(laws)
     for name, law in laws.items():
-        signals[name] = law.with_sign(recording.signals[name])
+        signals[name] = law.with_sign(recording.signals[name], rows)
         changed |= signals[name] != recording.signals[name]
     remark = (
         f"{recording.origin}: {', '.join(laws)} {REMARK} ({100.0 * changed.mean():.2g} % of the "
         f"rows); they follow from these elsewhere, and the surge acceleration shows that the "
-        f"vessel followed the sign ({gain:.0f} nats over all recordings); it is restored"
+        f"vessel followed the sign ({gain:.0f} nats over the fitted recordings); it is restored"
     )
     return replace(recording, signals=signals, remarks=(*recording.remarks, remark))

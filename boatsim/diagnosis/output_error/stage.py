@@ -62,6 +62,7 @@ def fit_to_simulations(
         simple = OutputErrorSearch(problem, only_stated, held_out, kept, budget)
         simple.start_from(_with_coefficients_of_file(only_stated))
     before = simple.model
+    candidates = [name for name in candidates if name not in contradicted]
     simple.add_effects(candidates)
     others = [name for name in ranking.best.effects if name not in contradicted]
     corrected = simple.model
@@ -121,9 +122,9 @@ def _better_of_selected(
 ) -> Fit:
     """The better of two vessels: by a search from few effects, and from all the filter selected.
 
-    Each search adds one effect at a time and is led by its start. What the filter selected is no
-    start if simulations of a group of recordings get much worse by it, because later steps are
-    compared with the start.
+    Each search adds one effect at a time, so that its result depends on its start. What the filter
+    selected is no start if simulations of a group of recordings get much worse by it, because later
+    steps are compared with the start.
 
     Args:
         simple: The search from the effects that are stated as causes, completed.

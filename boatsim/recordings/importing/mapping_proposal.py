@@ -50,7 +50,11 @@ from boatsim.recordings.importing.track import (
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
 from boatsim.recordings.notes import unit_of
-from boatsim.recordings.order_signs import laws_of_unsigned_orders
+from boatsim.recordings.order_signs import (
+    EFFORT_COLUMNS,
+    laws_of_unsigned_orders,
+    rows_without_sign,
+)
 from boatsim.recordings.raw_table import file_error
 
 USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
@@ -78,7 +82,6 @@ FROM_ENU = {
 QUARTER_TURN = " + 90 * deg"  # heading from north = 90 degrees - yaw from east
 BY_ITS_RANGE = "by its range"  # end of the note on a unit that the range only suggests
 MOTION_COLUMNS = ("phi_rad", "theta_rad", *RATES)  # that a track may contradict
-EFFORT_COLUMNS = {"effort_x": "force_x_N", "effort_n": "force_n_Nm"}
 POSE_COLUMNS = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
 KINDS = {
     "angle": ("rad", "deg"),
@@ -513,11 +516,11 @@ def _unsigned_order_lines(
     laws = laws_of_unsigned_orders(orders, *asked)
     if not laws:
         return [], []
-    share = np.any([law.negative for law in laws.values()], axis=0).mean()
-    names = " and ".join(g.name for g, _ in chosen.values())
+    share = rows_without_sign(laws).mean()
+    names = [_without_control_characters(g.name) for g, _ in chosen.values()]
     lines = [
-        f"# CHECK: {names} follow from the force and moment below, but are never negative, where",
-        f"# these ask for it in {100.0 * share:.2g} % of the rows. Did the drives push astern? A",
+        f"# CHECK: {', '.join(names)} follow from the force and moment below, but are never",
+        f"# negative, where these ask for it in {100.0 * share:.2g} % of the rows. Did the drives push astern? A",
         "# diagnosis decides by the motion and restores the signs.",
     ]
     for kind, g in efforts.items():
@@ -539,12 +542,13 @@ class _RevolutionUnit:
     def with_unit(self, g: Classification, drive: VesselChannel) -> tuple[Classification, str]:
         """Return a signal with the unit that it shows, and what the owner must check."""
         stated = g.signal.unit or g.word or _unit(g)
-        if stated or g.name == drive.name:
+        values = g.signal.values[np.isfinite(g.signal.values)]
+        if stated or g.name == drive.name or not len(values):
             return g, ""
-        size = float(np.nanmax(np.abs(g.signal.values)))
+        size = float(np.max(np.abs(values)))
         limit = max(abs(drive.low), abs(drive.high))
         unit = unit_of(drive.name)
-        excess = size > MAX_UNIT_EXCESS * limit and _scale(g, g.signal.values, drive) is None
+        excess = size > MAX_UNIT_EXCESS * limit and _scale(g, values, drive) is None
         if unit in KINDS["force"] and excess:
             return g, f"; CHECK: as {unit} up to {size / limit:.2g} times the vessel's range"
         if unit != "rad/s" or size < MIN_UNIT_EXCESS * limit:
@@ -559,7 +563,8 @@ class _RevolutionUnit:
             return replace(g, word="rpm"), note
         signs = []
         if by_size:
-            signs.append(f'; CHECK: {as_it_is}; in rpm it would be "{g.name} * rpm"')
+            called = _without_control_characters(g.name)
+            signs.append(f'; CHECK: {as_it_is}; in rpm it would be "{called} * rpm"')
         return g, "".join(signs) or f"; CHECK: {as_it_is}"
 
     def _speed_ratio(self, g: Classification, drive: VesselChannel) -> float:
@@ -592,8 +597,10 @@ def _match_channels(
     turning: Turning,
 ) -> dict[str, tuple[Classification, str]]:
     """Signals of the channels by number, name, motion or order, and what the user must check."""
-    found: dict[str, tuple[Classification, str]] = {}
-    for group in ([d for d in drives if _steers(d)], [d for d in drives if not _steers(d)]):
+    exact = {g.name: g for g in moving}
+    found = _with_note({d.name: exact[d.name] for d in drives if d.name in exact}, "")
+    for steers in (True, False):
+        group = [d for d in drives if d.name not in found and _steers(d) is steers]
         found |= _match_by_number(group, _unassigned(moving, found))
     unnumbered = [d for d in drives if d.name not in found]
     found |= _with_note(_match_by_name(unnumbered, _unassigned(moving, found)), "")
@@ -693,6 +700,9 @@ def _match_by_number(
     """
     if len(drives) < MANY_DRIVES:
         return {}
+    own = [re.findall(r"\d+", drive.name) for drive in drives]
+    if all(len(numbers) == 1 for numbers in own) and len({*map(tuple, own)}) == len(drives):
+        drives = sorted(drives, key=lambda drive: int(re.findall(r"\d+", drive.name)[0]))
     families: dict[str, dict[int, Classification]] = {}
     for g in signals:
         numbers = re.findall(r"\d+", g.name)

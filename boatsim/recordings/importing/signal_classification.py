@@ -54,6 +54,11 @@ OUTPUTS = set(
     "propeller rpm rps shaft esc helm delta jet wheel tiller".split()
 )
 ORDERED = set("reference ref setpoint sp desired des cmd command commanded order ordered".split())
+# words of angles that are no directions of a drive
+NO_DRIVE = set(
+    "heading hdg psi course compass bearing track cog wind wave current camera gimbal pan tilt "
+    "roll pitch yaw phi theta heel trim north east".split()
+)
 THRUSTS = set("throttle thrust rpm rps power".split())
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
@@ -253,7 +258,10 @@ def classify_signal(
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
     if kind is None and _is_direction_order(name, tokens, log):
-        kind, tokens = "command", tokens | {"steer"}
+        word, why = _unit_word(name, signal), ""
+        if not (signal.unit or word) and 2.0 * np.pi < float(np.max(np.abs(values))) <= FULL_CIRCLE:
+            word, why = "deg", "degrees by its range"
+        return Classification(name, signal, "command", word, moves + rate, why, tokens | {"steer"})
     called = names_channel(name, body.channels)
     if name in body.channels or is_command(name) or called or _is_load(tokens, body):
         kind = "command"
@@ -292,11 +300,9 @@ def _is_load(tokens: frozenset[str], body: Body) -> bool:
 
 
 def _most_degrees(tokens: frozenset[str]) -> float:
-    """The largest number that may be an angle of a rudder or of a steering wheel [deg]."""
+    """The largest number that may be an angle of a rudder, a thruster or a steering wheel [deg]."""
     if tokens & {"wheel", "azimuth", "azi"}:  # these turn around, and may be counted on
         return MAX_WHEEL
-    if "angle" in tokens:
-        return FULL_CIRCLE
     return 90.0
 
 
@@ -374,7 +380,7 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
 
 def _is_direction_order(name: str, tokens: frozenset[str], log: Log) -> bool:
     """Whether a signal is the order of an angle next to one of a thrust, in a stream of a drive."""
-    if "angle" not in tokens or not tokens & ORDERED or tokens & OTHER:
+    if "angle" not in tokens or not tokens & ORDERED or tokens & (OTHER | NO_DRIVE):
         return False
     stream = name.rpartition(".")[0]
     for other in log.signals:
@@ -445,7 +451,7 @@ def effort_of_name(name: str) -> str:
 
 def _effort(words: Sequence[str], tokens: frozenset[str]) -> str | None:
     """The kind of a force or moment that was asked for; None for another signal."""
-    if not tokens & EFFORTS or tokens & SENSED:
+    if not tokens & EFFORTS or tokens & (SENSED | {"wind", "wave", "current"}):
         return None
     axes = [w for w in words if w in EFFORT_AXES]
     if len(axes) == 0 and tokens & MOMENT_WORDS and words[-1] == "z":

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.checks.order_signs import restore_order_signs
+from boatsim.diagnosis.checks.order_signs import _response_evidence, restore_order_signs
 from boatsim.diagnosis.loading import open_recording_parts
 from boatsim.diagnosis.log_check import check_files
 from boatsim.physics.vessel import load_vessel
@@ -119,8 +119,16 @@ def test_a_proposed_map_keeps_the_force_and_moment_of_unsigned_orders(tmp_path: 
     ]
     text = propose_map(Log(Path("log.csv"), signals), "otter", drives, ("surge", "sway", "yaw"))
     assert 'force_x_N = "tau_X"' in text and 'force_n_Nm = "tau_N"' in text
-    assert "never negative" in text and 'n_port_radps = "n1"' in text
+    assert "are never" in text and 'n_port_radps = "n1"' in text
     signals["tau_X"] = Signal(log.t, np.abs(log["force_x_N"]) + 200.0)
-    assert "never negative" not in propose_map(
+    assert "are never" not in propose_map(
         Log(Path("log.csv"), signals), "otter", drives, ("surge", "sway", "yaw")
     )
+
+
+def test_a_time_without_positions_is_no_evidence() -> None:
+    rng, t = np.random.default_rng(3), np.arange(0.0, 60.0, 0.2)
+    force, speed, acceleration = rng.normal(size=(3, len(t)))
+    whole = _response_evidence(force, t, t, speed, acceleration)
+    later = np.where(t > 30.0, t + 1200.0, t)
+    assert _response_evidence(force, later, later, speed, acceleration) < whole + 1.0

@@ -77,3 +77,35 @@ def test_an_angle_beside_no_thrust_is_no_order() -> None:
     lines = proposed(Log(log.path, signals))
     assert "reference" not in lines.get(ANGLES[0].name, "")
     assert lines[ANGLES[2].name].startswith('"azimuth_3.data * deg"')
+
+
+def test_signals_with_the_names_of_the_channels_keep_them() -> None:
+    drives = [VesselChannel(f"thruster_{number}_N", -250.0, 400.0) for number in (3, 1, 2)]
+    log = log_of_drives((1, 2, 3))
+    signals = {f"thruster_{number}_N": wave(number, -100.0, 390.0) for number in (1, 2, 3)}
+    lines = proposed(Log(log.path, {**log.signals, **signals}), drives)
+    for drive in drives:
+        assert lines[drive.name].startswith(f'"{drive.name}"')
+    lines = proposed(log, drives)
+    for drive, number in zip(drives, (3, 1, 2), strict=True):
+        assert lines[drive.name].startswith(f'"reference_{number}.throttle_reference"')
+
+
+def test_a_heading_to_be_held_is_no_order_of_a_drive() -> None:
+    log = log_of_drives((1,))
+    signals = {name: s for name, s in log.signals.items() if "_1." not in name}
+    signals["ctrl.heading_angle_ref"] = wave(1, -3.0, 3.0)
+    signals["ctrl.thrust_ref"] = wave(2, 0.0, 300.0)
+    drives = [VesselChannel("thrust_N", -250.0, 400.0), VesselChannel("rudder_rad", -0.6, 0.6)]
+    lines = proposed(Log(log.path, signals), drives)
+    assert "heading_angle_ref" not in lines.get("rudder_rad", "")
+
+
+def test_pulses_with_an_empty_cell_are_no_force_that_is_too_large() -> None:
+    pulses = wave(1, 1100.0, 1900.0)
+    pulses.values[3] = np.nan
+    log = log_of_drives(())
+    signals = {**log.signals, "servo_port": pulses}
+    drives = [VesselChannel("thrust_port_N", -60.0, 60.0)]
+    lines = proposed(Log(log.path, signals), drives)
+    assert "the vessel's range" not in lines["thrust_port_N"]
