@@ -520,8 +520,8 @@ def _unsigned_order_lines(
     names = [_without_control_characters(g.name) for g, _ in chosen.values()]
     lines = [
         f"# CHECK: {', '.join(names)} follow from the force and moment below, but are never",
-        f"# negative, where these ask for it in {100.0 * share:.2g} % of the rows. Did the drives push astern? A",
-        "# diagnosis decides by the motion and restores the signs.",
+        f"# negative, where these ask for it in {100.0 * share:.2g} % of the rows. Did the drives",
+        "# push astern? A diagnosis decides by the motion and restores the signs.",
     ]
     for kind, g in efforts.items():
         lines.append(f"{EFFORT_COLUMNS[kind]} = {toml_value(_expression(g))}")
