@@ -1,11 +1,13 @@
 """Comparison of the L1 joystick with a PID autopilot on the same 120 boats and eight manoeuvres.
 
 python -m benchmarks.joystick_monte_carlo [--runs 120] [--jobs N] [--out out/joystick_monte_carlo]
-[--plot FILE.svg]
+[--plot FILE.svg] [--rivals]
 
 The manoeuvres are those of the scale boat's thesis. For each, the script prints the 95th percentile
 of every metric for both controllers, and the number of boats on which each is lower. It then lists
-where L1 is not better. An interrupted run resumes. The page with all figures is report.html in the
+where L1 is not better. With `--rivals` the other joystick controllers run on the same boats, and the
+script prints the mean difference of each from the PID autopilot over the four manoeuvres of a kind.
+An interrupted run resumes. The page with all figures is report.html in the
 folder.
 """
 
@@ -26,6 +28,7 @@ from boatsim.view.svg_plots import round_ticks
 
 SCENARIOS = ["joystick_boat/sway_[1-4]", "joystick_boat/yaw_[1-4]"]
 FIRST, SECOND = "pid_autopilot", "l1_joystick"
+RIVALS = [FIRST, SECOND, "adrc", "indi", "lqi", "mpc"]
 NORMS = {  # metrics of the thesis' requirements and tables
     "sway": ["heading_at_end", "surge_offset", "yaw_rate_inf", "yaw_rate_l2", "time_to_end"],
     "yaw": ["moved", "position_inf", "position_rms", "excursion", "turn_time"],
@@ -67,12 +70,18 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--plot", type=Path, help="write a chart of both controllers' metrics to this SVG file"
     )
+    parser.add_argument(
+        "--rivals", action="store_true", help=f"compare {', '.join(RIVALS)} (three times as long)"
+    )
     given = parser.parse_args(arguments)
     told = [name for names in NORMS.values() for name in names]
+    varied = dict(VARIED)
+    if given.rivals:
+        varied["controller.use"] = RIVALS
     with show_task_progress() as report:
         done = boatsim.sweep(
             SCENARIOS,
-            VARIED,
+            varied,
             DRAWN,
             given.runs,
             "latin",
@@ -82,6 +91,12 @@ def main(arguments: list[str] | None = None) -> int:
             norms=told,
             report=report,
         )
+    if given.rivals:
+        rows = _rival_rows(done)
+        title = f"mean difference from {FIRST} with 95 % interval, and share of boats with less"
+        print_text_table(title, ["manoeuvres", "metric", FIRST, *RIVALS[1:]], rows, 2)
+        print(f"written to {given.out}: sweep.parquet, report.html")
+        return 0 if done.complete else 130
     rows, lost = _rows(done)
     print_text_table(
         f"{SECOND} beside {FIRST}: sizes of the metrics on {given.runs} boats", HEAD, rows, 2
@@ -98,6 +113,37 @@ def main(arguments: list[str] | None = None) -> int:
     if done.complete:
         return 0
     return 130
+
+
+def _rival_rows(done: boatsim.Sweep) -> list[list[str]]:
+    """Return a row for each kind of manoeuvre and metric, with a cell for each controller."""
+    columns = {name: np.array(values) for name, values in done.columns.items()}
+    scenarios = list(dict.fromkeys(columns["scenario"].tolist()))
+    rows = []
+    for kind, names in NORMS.items():
+        manoeuvres = [scenario for scenario in scenarios if f"/{kind}_" in scenario]
+        for name in names:
+            sizes = {}
+            for controller in RIVALS:
+                each = [_sizes(columns, scenario, controller, name) for scenario in manoeuvres]
+                sizes[controller] = np.array(each)  # (manoeuvres, boats)
+            cells = [kind, f"|{name}| [{done.results.units[name]}]"]
+            finite = sizes[FIRST][np.isfinite(sizes[FIRST])]
+            cells.append(f"{finite.mean():.3g}")
+            for controller in RIVALS[1:]:
+                cells.append(_difference(sizes[FIRST], sizes[controller]))
+            rows.append(cells)
+    return rows
+
+
+def _difference(first: Array, second: Array) -> str:
+    """Mean difference of two controllers (manoeuvres, boats), by boats, and who is lower."""
+    reached = np.isfinite(first) & np.isfinite(second)
+    change = np.where(reached, second - first, np.nan)
+    by_boat = np.nanmean(change[:, reached.any(axis=0)], axis=0)
+    sure = 1.96 * float(np.std(by_boat, ddof=1)) / np.sqrt(len(by_boat))
+    lower = float(np.mean((second < first)[reached]))
+    return f"{np.mean(by_boat):+.2g} ± {sure:.1g}, {100.0 * lower:.0f} %"
 
 
 def _sizes(columns: Mapping[str, Array], scenario: str, controller: str, name: str) -> list[float]:
