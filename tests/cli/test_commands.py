@@ -300,10 +300,10 @@ def test_margins_prints_the_l1_norm_of_the_yaw_channel() -> None:
 
 @pytest.mark.slow
 def test_margins_on_a_vessel_are_analytic_and_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
-    controller = content.load_class("controller", "l1_joystick")
+    controller = content.load_class("controller", "l1_joystick_sway")
     every = controller.operating_points
     monkeypatch.setattr(controller, "operating_points", lambda self: every(self)[2:3])
-    result = boatsim("margins", "l1_joystick", "--vessel", "joystick_boat", "--load", "wide")
+    result = boatsim("margins", "l1_joystick_sway", "--vessel", "joystick_boat", "--load", "wide")
     assert result.exit_code == 0 and "0.616" in result.stdout
     turn = [line for line in result.stdout.splitlines() if line.startswith("yaw in a turn")]
     assert turn[0].split()[-4] == "0.156" and abs(float(turn[0].split()[-2])) < 5.0
