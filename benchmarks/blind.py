@@ -134,6 +134,7 @@ def main() -> None:
         print(f"{test:8}" + ", ".join(cells), flush=True)
     print("\nrestlessness of the motors ahead and astern [PWM of 255]")
     for bandwidth in (0.5, 2.0):
+        # a pole of 0.7 of the low-pass meets the L1-norm condition, as 1.4 1/s with 2 rad/s does
         law = {"use": "l1_joystick", "surge_bandwidth": bandwidth, "pole": 0.7 * bandwidth}
         print(
             f"l1_joystick, surge low-pass {bandwidth:g} rad/s"
