@@ -12,7 +12,11 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.signal_classification import effort_of_name
-from boatsim.recordings.importing.track import track_of_positions
+from boatsim.recordings.importing.track import (
+    WINDOW,
+    rows_one_window_apart,
+    track_of_positions,
+)
 from boatsim.recordings.importing.turning import DELAYS
 from boatsim.recordings.order_signs import (
     EFFORT_COLUMNS,
@@ -26,7 +30,6 @@ from boatsim.recordings.table import Recording
 # [nats] by which the surge acceleration must be more probable with the signs: odds of 20 to one,
 # next to the law that the log shows
 FOLLOWED = 3.0
-SPEED_SPAN = 1.0  # [s] over which a speed is differenced, as the positions are
 REMARK = "lost their sign where force and moment ask for thrust astern"
 
 
@@ -113,8 +116,8 @@ def _response_evidence(
         response = np.column_stack([without, force[rows[inside]]])
         size, fitted = _residual(without, a)[0], _residual(response, a)
         if fitted[1] > 0.0 and 0.0 < fitted[0] < size:
-            # differences over one span are independent; times without positions do not count
-            independent = len(np.unique(np.floor(t[inside] / SPEED_SPAN)))
+            # differences over one window are independent; times without positions do not count
+            independent = len(np.unique(np.floor(t[inside] / WINDOW)))
             most = max(most, 0.5 * independent * float(np.log(size / fitted[0])))
     return most
 
@@ -134,12 +137,8 @@ def _surge_motion(recording: Recording) -> tuple[Array, Array, Array]:
     track = track_of_positions(recording.t[fixed], x[fixed], y[fixed])
     bow = np.interp(track.t, recording.t[known], psi[known])
     speed = track.north * np.cos(bow) + track.east * np.sin(bow)
-    after = np.searchsorted(track.t, track.t + SPEED_SPAN)
-    begin = np.flatnonzero(after < len(track.t))
-    end = after[begin]
+    begin, end = rows_one_window_apart(track.t)
     span = track.t[end] - track.t[begin]
-    near = span < 2.0 * SPEED_SPAN
-    begin, end, span = begin[near], end[near], span[near]
     middle = 0.5 * (track.t[begin] + track.t[end])
     return middle, 0.5 * (speed[begin] + speed[end]), (speed[end] - speed[begin]) / span
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, parse
@@ -134,12 +135,8 @@ def track_of_positions(t: Array, north: Array, east: Array) -> Track:
     if new.sum() > 3:
         z = (north + 1j * east)[new]
         noise = float(np.median(np.abs(np.diff(z, 2)))) / np.sqrt(6.0)
-    after = np.searchsorted(t, t + WINDOW)
-    inside = after < len(t)
-    begin, end = np.flatnonzero(inside), after[inside]
+    begin, end = rows_one_window_apart(t)
     span = t[end] - t[begin]
-    near = span < 2.0 * WINDOW
-    begin, end, span = begin[near], end[near], span[near]
     return Track(
         0.5 * (t[begin] + t[end]),
         (north[end] - north[begin]) / span,
@@ -147,6 +144,22 @@ def track_of_positions(t: Array, north: Array, east: Array) -> Track:
         extent,
         noise,
     )
+
+
+def rows_one_window_apart(t: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return pairs of rows `WINDOW` apart, between which values are differenced; no gap is bridged.
+
+    Args:
+        t: Times (N,) [s], increasing.
+
+    Returns:
+        First and second rows (M,) of the pairs.
+    """
+    after = np.searchsorted(t, t + WINDOW)
+    inside = after < len(t)
+    begin, end = np.flatnonzero(inside), after[inside]
+    near = t[end] - t[begin] < 2.0 * WINDOW
+    return begin[near], end[near]
 
 
 def reason_not_measured(
