@@ -34,12 +34,20 @@ class FreeRun:
     def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:
         """Return simulated minus recorded values of some signals, an array (M,) for each of them.
 
+        They are nan where nothing was recorded, and infinite where the simulation has diverged.
+
         Args:
             model: Name of the model.
             signals: Columns; those that were not recorded are omitted.
         """
-        simulated, recorded = self.channels[model], self.channels["recorded"]
-        return [simulated[name] - recorded[name] for name in signals if name in recorded]
+        found = list[Array]()
+        for name in signals:
+            if name in self.channels["recorded"]:
+                recorded, simulated = self.channels["recorded"][name], self.channels[model][name]
+                diverged = ~np.isfinite(simulated) & ~np.isnan(recorded)
+                with np.errstate(invalid="ignore"):
+                    found.append(np.where(diverged, np.inf, simulated - recorded))
+        return found
 
 
 def free_run_horizon(problem: Problem, held_out: Sequence[MappedRecording]) -> float:

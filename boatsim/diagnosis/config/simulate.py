@@ -56,5 +56,9 @@ class SimulateConfig:
     )
     followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
     fitted: int = setting(
-        5, "count", "Candidates of the largest gain of a rough fit that are fitted in full.", low=1
+        5,
+        "count",
+        "Most candidates that get a full fit before one is added, in the order of the evidence of "
+        "their rough fits; usually the first or second one is added.",
+        low=1,
     )

@@ -116,12 +116,17 @@ class OutputErrors:
             step = STEP if found.theta[j] + STEP * space.sd[j] <= space.high[j] else -STEP
             theta = found.theta.copy()
             theta[j] += step * space.sd[j]
-            own = None if self._is_measurement(found, j) else starts
+            own = None if self.is_measurement(found, j) else starts
             J[:, j] = (self.residuals(replace(found, theta=theta), own) - at) / step
         return np.nan_to_num(J, posinf=0.0, neginf=0.0)
 
-    def _is_measurement(self, found: Fit, j: int) -> bool:
-        """Whether a parameter belongs to an error of the measurement."""
+    def is_measurement(self, found: Fit, j: int) -> bool:
+        """Whether a parameter belongs to an error of the measurement.
+
+        Args:
+            found: The model.
+            j: Index of the parameter.
+        """
         parameter = found.free[j]
         if parameter.relative:
             return False

@@ -81,6 +81,19 @@ def fit_to_free_runs(
     return _with_covariance(here)
 
 
+def without_fit(
+    errors: OutputErrors, model: Fit, fixed_effects: Sequence[str] = ()
+) -> OutputErrorFit:
+    """Return a model with its parameters unchanged, as if a fit had ended there.
+
+    Args:
+        errors: Errors of free runs over the fitted recordings.
+        model: Model whose parameters are kept.
+        fixed_effects: Effects whose parameters are not fitted later either.
+    """
+    return _with_covariance(_evaluate(errors, model, fixed_effects))
+
+
 def add_parameters(
     errors: OutputErrors, base: OutputErrorFit, start: Fit, steps: int
 ) -> OutputErrorFit:
@@ -91,19 +104,23 @@ def add_parameters(
         base: Fit of the model without the effect.
         start: The model with the effect, whose parameters come last.
         steps: Number of Gauss-Newton steps.
+
+    Returns:
+        The fit with its approximate evidence.
     """
     known = base.J.shape[1]
     added = range(known, len(start.free))
     start = replace(start, theta=ParameterSpace(start.free).clip(start.theta))
-    here = _at(errors, start, base.fixed, base.starts)
+    starts = None if errors.is_measurement(start, known) else base.starts
+    here = _at(errors, start, base.fixed, starts)
     for _ in range(steps):
         own = errors.derivatives(here.model, here.starts, here.residuals, added)
-        J = np.hstack([base.J, own[:, known:]])
-        further, _ = _step(errors, replace(here, J=J), 0.0, base.starts)
+        here = replace(here, J=np.hstack([base.J, own[:, known:]]))
+        further, _ = _step(errors, here, 0.0, starts)
         if further is None:
             break
-        here = further
-    return here
+        here = replace(further, J=here.J)
+    return _with_covariance(here)
 
 
 def _evaluate(errors: OutputErrors, start: Fit, fixed_effects: Sequence[str]) -> OutputErrorFit:

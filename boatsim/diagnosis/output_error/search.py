@@ -16,7 +16,12 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, remove_effect
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs
 from boatsim.diagnosis.output_error.errors import OutputErrors, output_errors
-from boatsim.diagnosis.output_error.fit import OutputErrorFit, add_parameters, fit_to_free_runs
+from boatsim.diagnosis.output_error.fit import (
+    OutputErrorFit,
+    add_parameters,
+    fit_to_free_runs,
+    without_fit,
+)
 from boatsim.diagnosis.output_error.weights import run_errors, typical_error_ratio
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
@@ -55,6 +60,7 @@ class OutputErrorSearch:
         self.budget = budget or SearchBudget(problem.work_count, self.config.budget)
         self.horizon = free_run_horizon(problem, held_out)
         self.errors = self._errors_of(start)
+        self.added = 0  # number of effects
         self._accept(self._fitted(start))
 
     @property
@@ -102,16 +108,21 @@ class OutputErrorSearch:
     def add_effects(self, candidates: Sequence[str]) -> None:
         """Add effects one by one, each the one that the free runs make most probable.
 
+        Rough fits order the candidates; the first one of which a full fit gains enough evidence and
+        makes simulations of held-out recordings better is added.
+
         Args:
             candidates: Names of the candidates.
         """
-        for _ in range(self.config.effects):
-            if self.budget.is_spent:
-                return
-            for further in self._most_probable(candidates):
+        while self.added < self.config.effects:
+            for rough in self._most_probable(candidates)[: self.config.fitted]:
+                if self.budget.is_spent:
+                    return
+                further = self._fitted(rough.model)
                 gain = further.evidence - self.best.evidence
                 if gain >= self.config.effect_gain and self._helps(further.model):
                     self._accept(further)
+                    self.added += 1
                     break
             else:
                 return
@@ -150,28 +161,36 @@ class OutputErrorSearch:
         return fit_to_free_runs(self.errors, start, self.fixed_effects)
 
     def _accept(self, found: OutputErrorFit) -> None:
-        """Make a fit the best one, and its errors the units of the next ones."""
+        """Make a fit the best one, and its errors the units of the next ones.
+
+        In these units it is fitted again, unless simulations of held-out recordings then diverge.
+        """
         self.errors = self._errors_of(found.model)
-        self.best = self._fitted(found.model)
+        again = self._fitted(found.model)
+        if self._diverges(again.model) and not self._diverges(found.model):
+            again = without_fit(self.errors, found.model, self.fixed_effects)
+        self.best = again
+
+    def _diverges(self, model: Fit) -> bool:
+        """Whether a simulation of a held-out recording diverges."""
+        runs = free_runs(self.problem, {AFTER: model}, self.held_out, self.horizon)
+        squares = run_errors(runs, AFTER).squares.values()
+        return any(not np.isfinite(each).all() for each in squares)
 
     def _errors_of(self, reference: Fit) -> OutputErrors:
         """Errors of free runs over the fitted recordings in units of those of a vessel."""
         return output_errors(self.problem, reference, self.problem.recordings, self.horizon)
 
     def _most_probable(self, candidates: Sequence[str]) -> list[OutputErrorFit]:
-        """The fits with one more effect, the most probable one first."""
-        rough = []
+        """Rough fits with one more effect that gain evidence, the most probable one first."""
+        rough = list[OutputErrorFit]()
         for start in self._promising(candidates)[: self.config.followed]:
             if self.budget.is_spent:
-                return []
+                break
             steps = self.config.followed_steps
             rough.append(add_parameters(self.errors, self.best, start, steps))
-        rough.sort(key=lambda one: -one.score)
-        full = [
-            fit_to_free_runs(self.errors, one.model, self.fixed_effects)
-            for one in rough[: self.config.fitted]
-        ]
-        return sorted(full, key=lambda one: -one.evidence)
+        gaining = [one for one in rough if one.evidence > self.best.evidence]
+        return sorted(gaining, key=lambda one: -one.evidence)
 
     def _promising(self, candidates: Sequence[str]) -> list[Fit]:
         """Starts with one more effect, at the best of its starting points, by predicted gain."""

@@ -18,6 +18,8 @@ from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import Ranking
 
+FIRST_SHARE = 0.5  # of the budget, for the first of two searches, so that the second one can end
+
 
 def fit_to_simulations(
     problem: Problem,
@@ -46,7 +48,8 @@ def fit_to_simulations(
     """
     if not ranking.has_unexplained_force_or_cause or ranking.divergences:
         return ranking
-    simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=budget)
+    first = budget.part(FIRST_SHARE)
+    simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=first)
     simple.start_from(_with_coefficients_of_file(ranking.recalibrated))
     retuned = simple.model
     better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)
@@ -55,20 +58,24 @@ def fit_to_simulations(
         for one in ranking.named
         if not refines_estimated_number(problem, ranking.best, one.name)
     ]
-    contradicted = contradicted_effects(problem, ranking.best, stated, held_out, budget)
+    contradicted = contradicted_effects(problem, ranking.best, stated, held_out, first)
     kept = [name for name in stated if name not in contradicted]
     if kept:
         only_stated = _without_effects(problem, ranking.best, kept)
-        simple = OutputErrorSearch(problem, only_stated, held_out, kept, budget)
+        simple = OutputErrorSearch(problem, only_stated, held_out, kept, first)
         simple.start_from(_with_coefficients_of_file(only_stated))
     before = simple.model
     candidates = [name for name in candidates if name not in contradicted]
     simple.add_effects(candidates)
     others = [name for name in ranking.best.effects if name not in contradicted]
-    corrected = simple.model
+    search = simple
     if set(others) != set(kept):
         start = _without_effects(problem, ranking.best, others)
-        corrected = _better_of_selected(simple, before, start, candidates)
+        search = _better_of_two(simple, before, start, candidates, budget)
+    if search.budget.is_spent and not budget.is_spent:
+        search.budget = budget
+        search.add_effects(candidates)
+    corrected = search.model
     found = ranking
     if better:
         found = _with_retuned(problem, ranking, retuned, held_out)
@@ -117,10 +124,14 @@ def _is_clearly_better(
     return not generalization.harmed_groups(problem, reference, found, held_out, horizon)
 
 
-def _better_of_selected(
-    simple: OutputErrorSearch, before: Fit, start: Fit, candidates: Sequence[str]
-) -> Fit:
-    """The better of two vessels: by a search from few effects, and from all the filter selected.
+def _better_of_two(
+    simple: OutputErrorSearch,
+    before: Fit,
+    start: Fit,
+    candidates: Sequence[str],
+    budget: SearchBudget,
+) -> OutputErrorSearch:
+    """The better of two searches: from few effects, and from all that the filter selected.
 
     Each search adds one effect at a time, so that its result depends on its start. What the filter
     selected is no start if simulations of a group of recordings get much worse by it, because later
@@ -131,20 +142,21 @@ def _better_of_selected(
         before: Its vessel before effects were added.
         start: The vessel with all effects that the filter selected.
         candidates: Names of the candidates that may be added.
+        budget: Work that the second search may do.
     """
     problem, held_out = simple.problem, simple.held_out
-    if simple.budget.is_spent:
-        return simple.model
-    whole = OutputErrorSearch(problem, start, held_out, simple.fixed_effects, simple.budget)
+    if budget.is_spent:
+        return simple
+    whole = OutputErrorSearch(problem, start, held_out, simple.fixed_effects, budget)
     whole.drop_effects()
     if generalization.harmed_groups(problem, before, whole.model, held_out, whole.horizon):
-        return simple.model
+        return simple
     whole.add_effects(candidates)
     if simple.held_out_ratio(whole.model) < 1.0 and not generalization.harmed_groups(
         problem, simple.model, whole.model, held_out, whole.horizon
     ):
-        return whole.model
-    return simple.model
+        return whole
+    return simple
 
 
 def _with_coefficients_of_file(found: Fit) -> Fit:

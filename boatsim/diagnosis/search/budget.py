@@ -59,6 +59,14 @@ class SearchBudget:
         other._first = self._first
         return other
 
+    def part(self, share: float) -> "SearchBudget":
+        """Return the budget of a search that may do a part of the remaining work.
+
+        Args:
+            share: Share of the remaining work, 0 to 1.
+        """
+        return SearchBudget(self._count, round(share * self.remaining_work))
+
     @property
     def used_work(self) -> int:
         """Computing work that the search has done, with those that it continues [steps x dof]."""

@@ -14,7 +14,7 @@ from boatsim.diagnosis.output_error.errors import output_errors
 from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.output_error.search import OutputErrorSearch
 from boatsim.diagnosis.output_error.stage import (
-    _better_of_selected,
+    _better_of_two,
     _with_corrected,
     contradicted_effects,
     fit_to_simulations,
@@ -177,8 +177,8 @@ def test_a_start_that_harms_a_group_of_recordings_is_not_taken(other_day: str) -
         held_out.append(replace(mapped, groups=(day,)))
     effect = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN})
     simple = OutputErrorSearch(problem, retuned, held_out)
-    found = _better_of_selected(simple, simple.model, effect, ())
-    assert ("weak_reverse" in found.effects) is (other_day == "odd_and_weak_astern")
+    found = _better_of_two(simple, simple.model, effect, (), whole_budget(problem))
+    assert ("weak_reverse" in found.model.effects) is (other_day == "odd_and_weak_astern")
 
 
 def test_of_two_searches_the_vessel_that_predicts_better_is_kept() -> None:
@@ -190,10 +190,27 @@ def test_of_two_searches_the_vessel_that_predicts_better_is_kept() -> None:
     assert "prop_walk" not in before.effects
     simple.add_effects(("weak_reverse",))
     assert simple.model.effects == ("weak_reverse",)
-    assert _better_of_selected(simple, before, selected, ()) is simple.model
+    budget = whole_budget(problem)
+    assert _better_of_two(simple, before, selected, (), budget) is simple
     astern = add_effect(problem, retuned, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN})
     less = OutputErrorSearch(problem, retuned, held_out)
-    assert _better_of_selected(less, less.model, astern, ()).effects == ("weak_reverse",)
+    better = _better_of_two(less, less.model, astern, (), budget)
+    assert better.model.effects == ("weak_reverse",)
+
+
+def test_a_fit_in_new_units_after_which_held_out_simulations_diverge_is_not_kept(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem, retuned = laid(sail("fitted", 1, odd)[0])
+    search = OutputErrorSearch(problem, retuned, held_out_of(problem, odd))
+    best = search.best
+    away = np.where([f.name == "surge" for f in best.model.free], -1e3, best.model.theta)
+    diverging = replace(best, model=replace(best.model, theta=away))
+    monkeypatch.setattr(search, "_fitted", lambda start: diverging)
+    search._accept(best)
+    np.testing.assert_array_equal(search.model.theta, best.model.theta)
+    search._accept(diverging)  # nothing else is there
+    np.testing.assert_array_equal(search.model.theta, away)
 
 
 def test_nothing_is_added_once_the_budget_is_spent() -> None:
