@@ -121,21 +121,23 @@ def _read_current(path: Path, _: int) -> CurrentTable:
     columns = [cell.strip() for cell in rows[0]] if rows else []
     _check_columns(columns, path)
     values = _numbers(rows[1:], columns, path)
-    axes, shape = [], []
-    for column in GRID:
-        points = np.zeros(1)
-        if column in columns:
-            points = np.unique(values[:, columns.index(column)])
-        axes.append(points)
-        shape.append(len(points))
-    _check_grid(values, columns, axes, path)
-    velocity = values[:, [columns.index(column) for column in VELOCITY]]
-    if shape[0] * shape[1] * shape[2] > MOST_POINTS:
+    time, north, east, depth = (_points(values, columns, column) for column in GRID)
+    _check_grid(values, columns, (time, north, east, depth), path)
+    count = len(time) * len(north) * len(east)
+    if count > MOST_POINTS:
         raise BadInput(
-            f"{path}: {shape[0] * shape[1] * shape[2]} points of time and place; "
-            f"allowed are at most {MOST_POINTS}"
+            f"{path}: {count} points of time and place; allowed are at most {MOST_POINTS}"
         )
-    return CurrentTable(*axes, velocity.reshape(*shape, 2))
+    velocity = values[:, [columns.index(column) for column in VELOCITY]]
+    shape = (len(time), len(north), len(east), len(depth), 2)
+    return CurrentTable(time, north, east, depth, velocity.reshape(shape))
+
+
+def _points(values: Array, columns: Sequence[str], column: str) -> Array:
+    """Values (N,) of one axis of the grid, increasing; zero if the file lacks its column."""
+    if column not in columns:
+        return np.zeros(1)
+    return np.asarray(np.unique(values[:, columns.index(column)]))
 
 
 def _check_columns(columns: Sequence[str], path: Path) -> None:
@@ -181,9 +183,7 @@ def _number(cell: str, column: str, label: str) -> float:
     return value
 
 
-def _check_grid(
-    values: Array, columns: Sequence[str], axes: Sequence[Array], path: Path
-) -> None:
+def _check_grid(values: Array, columns: Sequence[str], axes: Sequence[Array], path: Path) -> None:
     """Raise BadInput at the first row that is not the next point of the grid."""
     expected = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(GRID))
     points = np.zeros((len(values), len(GRID)))

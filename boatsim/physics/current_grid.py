@@ -95,9 +95,7 @@ class Corner(NamedTuple):
 
 
 @njit(inline="always")
-def corner_of_cell(
-    number: Any, times: Span, xs: Span, ys: Span, p: Array, first: Any
-) -> Corner:
+def corner_of_cell(number: Any, times: Span, xs: Span, ys: Span, p: Array, first: Any) -> Corner:
     """Return one of the eight corners of a cell.
 
     Args:

@@ -81,10 +81,9 @@ class FittedRecording:
         c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
         water, carried = np.zeros((rows, 2)), np.zeros((rows, 2))
         if "surge" in axes:
-            code, given = program.estimation_functions, (self.parameter_values, self.effect_switches)
-            for i, (t, x, y) in enumerate(
-                zip(fields["t"], fields["x"], fields["y"], strict=True)
-            ):
+            code = program.estimation_functions
+            given = self.parameter_values, self.effect_switches
+            for i, (t, x, y) in enumerate(zip(fields["t"], fields["x"], fields["y"], strict=True)):
                 water[i] = code.water_velocity(t, x, y, *given)
                 carried[i] = code.water_displacement(t, *given)
         north, east = water.T

@@ -92,7 +92,8 @@ class WaterFlow(EffectKind):
             Velocity to north and east [m/s].
         """
         if not type(self).varies:
-            return python_function(type(self).water_velocity)(self.values())
+            north, east = python_function(type(self).water_velocity)(self.values())
+            return float(north), float(east)
         table = np.array([*self.table(), 0.0])  # no array is empty
         return type(self).water_velocity(t, x, y, self.values(), table, np.int64(0))
 

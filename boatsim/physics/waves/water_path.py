@@ -79,6 +79,4 @@ class WaterPath:
         change = self.velocity[high] - self.velocity[low]
         inside = (since > 0.0) & (width > 0.0)
         share = np.where(inside, since / np.where(width > 0.0, width, 1.0), 0.0)
-        return np.asarray(
-            self.distance[low] + since * (self.velocity[low] + 0.5 * share * change)
-        )
+        return np.asarray(self.distance[low] + since * (self.velocity[low] + 0.5 * share * change))
