@@ -106,18 +106,18 @@ def corner_of_cell(number: Any, times: Span, xs: Span, ys: Span, p: Array, first
         p: Parameters and tables.
         first: Index of the grid.
     """
-    counts = int(p[first]), int(p[first + 1]), int(p[first + 2])
-    i, at, dt = times.low, 1.0 - times.share, -times.slope
+    count_t, count_x, count_y = int(p[first]), int(p[first + 1]), int(p[first + 2])
+    i, at, dt = int(times.low), 1.0 - times.share, -times.slope
     if number % 2 == 1:
-        i, at, dt = times.high, times.share, times.slope
-    j, ax, dx = xs.low, 1.0 - xs.share, -xs.slope
+        i, at, dt = int(times.high), times.share, times.slope
+    j, ax, dx = int(xs.low), 1.0 - xs.share, -xs.slope
     if (number // 2) % 2 == 1:
-        j, ax, dx = xs.high, xs.share, xs.slope
-    k, ay, dy = ys.low, 1.0 - ys.share, -ys.slope
+        j, ax, dx = int(xs.high), xs.share, xs.slope
+    k, ay, dy = int(ys.low), 1.0 - ys.share, -ys.slope
     if number // 4 == 1:
-        k, ay, dy = ys.high, ys.share, ys.slope
-    values = first + HEAD + counts[0] + counts[1] + counts[2]
-    place = values + 2 * ((i * counts[1] + j) * counts[2] + k)
+        k, ay, dy = int(ys.high), ys.share, ys.slope
+    values = first + HEAD + count_t + count_x + count_y
+    place = values + 2 * ((i * count_x + j) * count_y + k)
     return Corner(p[place], p[place + 1], at * ax * ay, dt * ax * ay, at * dx * ay, at * ax * dy)
 
 
@@ -209,8 +209,8 @@ def grid_displacement(t: float, p: Array, first: Any) -> tuple[float, float]:
     times, xs, ys = int(p[first]), int(p[first + 1]), int(p[first + 2])
     span = span_around(t, p, first + HEAD, times)
     means = first + HEAD + times + xs + ys + 2 * times * xs * ys
-    low, high = means + 4 * span.low, means + 4 * span.high
-    since, half = t - p[first + HEAD + span.low], 0.5 * span.share
+    low, high = means + 4 * int(span.low), means + 4 * int(span.high)
+    since, half = t - p[first + HEAD + int(span.low)], 0.5 * span.share
     north = p[low] + since * (p[low + 2] + half * (p[high + 2] - p[low + 2]))
     east = p[low + 1] + since * (p[low + 3] + half * (p[high + 3] - p[low + 3]))
     return north, east
