@@ -10,6 +10,7 @@ import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ VELOCITY = ("north_mps", "east_mps")
 MOST_ROWS = 200_000  # of the file, to be read within a second
 # Points of time and place, each of which is held in memory for each boat of a batch
 MOST_POINTS = 20_000
+LARGE = 2**62  # more than the number of rows, and an integer of numpy
 FASTEST = 20.0  # [m/s] twice the fastest tidal streams; a larger number has another unit
 
 
@@ -184,8 +186,8 @@ def _number(cell: str, column: str, label: str) -> float:
 
 
 def _check_grid(values: Array, columns: Sequence[str], axes: Sequence[Array], path: Path) -> None:
-    """Raise BadInput at the first row that is not the next point of the grid."""
-    expected = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(GRID))
+    """Raise BadInput at the first row that is not after the one before, or not on the grid."""
+    expected = _first_points(axes, len(values))
     points = np.zeros((len(values), len(GRID)))
     for i, column in enumerate(GRID):
         if column in columns:
@@ -197,13 +199,27 @@ def _check_grid(values: Array, columns: Sequence[str], axes: Sequence[Array], pa
     )
     if not given and len(values) > 1:
         raise BadInput(f"{path}: {len(values)} rows without {', '.join(GRID)}; one is required")
-    for i in range(min(len(points), len(expected))):
-        if not np.array_equal(points[i], expected[i]):
-            found = _point_text(points[i], given)
-            wanted = _point_text(expected[i], given)
-            raise BadInput(f"{path}:{i + 2}: {found}; expected {wanted}: {rule}")
-    if len(points) != len(expected):
-        raise BadInput(f"{path}: {len(points)} rows; {len(expected)} are required: {rule}")
+    for i in range(1, len(points)):
+        if points[i].tolist() <= points[i - 1].tolist():
+            found, before = _point_text(points[i], given), _point_text(points[i - 1], given)
+            raise BadInput(f"{path}:{i + 2}: {found} after {before}: {rule}")
+    wrong = np.flatnonzero(np.any(points != expected, axis=1))
+    if len(wrong):
+        i = int(wrong[0])
+        found, wanted = _point_text(points[i], given), _point_text(expected[i], given)
+        raise BadInput(f"{path}:{i + 2}: {found}; expected {wanted}: {rule}")
+    required = prod(len(axis) for axis in axes)
+    if len(points) != required:
+        raise BadInput(f"{path}: {len(points)} rows; {required} are required: {rule}")
+
+
+def _first_points(axes: Sequence[Array], count: int) -> Array:
+    """First points (count, axes) of a grid, without those after them: a wrong one may be huge."""
+    points = np.zeros((count, len(axes)))
+    for i, axis in enumerate(axes):
+        stride = min(prod(len(later) for later in axes[i + 1 :]), LARGE)
+        points[:, i] = axis[np.arange(count) // stride % len(axis)]
+    return points
 
 
 def _point_text(point: Array, given: Sequence[str]) -> str:

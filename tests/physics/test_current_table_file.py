@@ -143,9 +143,13 @@ REFUSED = {
     "infinite": (HEAD + "inf,0,0\n", ":2: t_s = inf; a finite number"),
     "centimetres": (HEAD + "0,35,0\n", ":2: north_mps = 35 m/s; allowed is -20 to 20 m/s"),
     "above water": ("depth_m,north_mps,east_mps\n-1,0,0\n", "depth_m = -1 m; allowed is 0 or more"),
-    "unsorted": (HEAD + "0,0,0\n2,0,0\n1,0,0\n", ":3: t_s = 2; expected t_s = 1: rows must be so"),
-    "repeated": (HEAD + "0,0,0\n0,0,0\n", "2 rows; 1 are required: .*one row for every"),
+    "unsorted": (
+        HEAD + "0,0,0\n2,0,0\n1,0,0\n",
+        ":4: t_s = 1 after t_s = 2: rows must be sorted by",
+    ),
+    "repeated": (HEAD + "0,0,0\n0,0,0\n", ":3: t_s = 0 after t_s = 0: .*one row for every"),
     "hole": (PLACES + "0,0,0,0\n0,1,0,0\n1,1,0,0\n", ":4: x_m = 1, y_m = 1; expected x_m = 1, y_m"),
+    "end": (PLACES + "0,0,0,0\n0,1,0,0\n1,0,0,0\n", "3 rows; 4 are required"),
     "two velocities": ("north_mps,east_mps\n0,0\n1,1\n", "2 rows without t_s, x_m, y_m, depth_m"),
 }
 
@@ -164,6 +168,12 @@ def test_a_missing_file_and_a_binary_file_are_refused(tmp_path: Path) -> None:
     (tmp_path / "tide.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(BadInput, match="no CSV file in UTF-8"):
         read_current(tmp_path / "tide.csv")
+
+
+def test_a_track_is_no_grid_however_long_it_is(tmp_path: Path) -> None:
+    rows = "".join(f"{t},{2 * t},{3 * t},{t},0,0\n" for t in range(5_000))
+    with pytest.raises(BadInput, match=":3: t_s = 1, .* expected t_s = 0, x_m = 0, y_m = 0, depth"):
+        read_current(written(tmp_path, "t_s,x_m,y_m,depth_m,north_mps,east_mps\n" + rows))
 
 
 def test_a_table_with_too_many_points_is_refused(tmp_path: Path) -> None:
