@@ -18,7 +18,7 @@ from boatsim.physics.base import ChannelEffect, CoefficientRelease, Effect, Meas
 from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
-from boatsim.physics.vessel import Vessel, check_bindings
+from boatsim.physics.vessel import Vessel, check_bindings, with_absolute_paths
 
 FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
@@ -214,7 +214,8 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
             table: dict[str, object] = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
             yield _Source(table, kind, False)
     for table in vessel.diagnosis.also:
-        yield _Source(table, load_class("effect", str(table.get("use")), vessel.path), True)
+        requested: type[Effect] = load_class("effect", str(table.get("use")), vessel.path)
+        yield _Source(with_absolute_paths(requested, table, vessel.path), requested, True)
     for name in own:
         yield _Source({"use": name}, load_class("effect", name, named=True), True)
 

@@ -23,7 +23,7 @@ CHI_SQUARE_MEDIAN = 0.455  # of the square of a standard normal variable
 # of them, because its error is a candidate effect (`added_mass_error`). Settings are numbers, so
 # that this list of names is no setting; a vessel or the notes may specify the uncertainty of other
 # kinds.
-UNCERTAIN = ("damping", "thrust", "restoring", "wind", "wave")
+UNCERTAIN = ("damping", "thrust", "restoring", "wind", "wave", "current")
 
 
 def froude_time_scale(vessel: Vessel) -> float:

@@ -108,6 +108,8 @@ def make_motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Mo
     full = dict.fromkeys(Motion._fields, 0.0)
     full |= {"cos_psi": c, "sin_psi": s, "wr": given.get("w", 0.0)}
     full |= {"water_north": current[0], "water_east": current[1]}
+    t = given.get("t", 0.0)
+    full |= {"carried_north": current[0] * t, "carried_east": current[1] * t}
     full["ur"] = given.get("u", 0.0) - (c * current[0] + s * current[1])
     full["vr"] = given.get("v", 0.0) - (c * current[1] - s * current[0])
     return Motion(**(full | given))

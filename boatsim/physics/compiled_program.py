@@ -166,8 +166,13 @@ class CompiledProgram(Protocol):
         arrays of `plant`.
         """
 
-    def water_velocity(self, p: Array, on: Array) -> tuple[float, float]:
+    def water_velocity(
+        self, t: float, x: float, y: float, p: Array, on: Array
+    ) -> tuple[float, float]:
         """Return the velocity of the water over the ground, north and east [m/s]."""
+
+    def water_displacement(self, t: float, p: Array, on: Array) -> tuple[float, float]:
+        """Return how far the water on which waves travel has moved since t = 0 [m]."""
 
     def pose_and_velocities(self, s: Any) -> MeasuredMotion:
         """Return position, attitude and body-axes velocities of a state of the vessel."""

@@ -22,6 +22,7 @@ from boatsim.physics.groups import without_group
 from boatsim.physics.kernel.records import VesselNumbers, VesselState
 from boatsim.physics.kernel.source import motion_module_text
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.kinds.flow import is_varying_flow
 from boatsim.physics.kinds.release import CoefficientRelease
 from boatsim.physics.native.build import NoCompiler, compiler_path, warn_of_slow_compilation
 from boatsim.physics.native.declarations import NotTranslatable
@@ -224,7 +225,9 @@ class Program:
         text = {
             "laws.py": self.composition.source_text(),
             "motion.py": motion_module_text(
-                self.vessel.dof, centred=self.vessel.body.centre == (0.0, 0.0)
+                self.vessel.dof,
+                centred=self.vessel.body.centre == (0.0, 0.0),
+                varying_water=any(is_varying_flow(e) for e in self.effects),
             ),
         }
         package: ModuleType = cache.import_program(text, {type(e) for e in self.effects})

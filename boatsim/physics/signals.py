@@ -110,6 +110,8 @@ class Motion(NamedTuple):
     sin_psi: float
     water_north: float  # [m/s] velocity of the water over ground to north
     water_east: float  # [m/s] to east
+    carried_north: float  # [m] distance since t = 0 of the water on which waves travel
+    carried_east: float  # [m] the same to east
 
 
 class MeasuredMotion(NamedTuple):

@@ -45,7 +45,7 @@ MOTION = (*POSE, *RATES)
 # Columns of runs of boatsim other than pose, rates and commands; missing sensors are nan
 RUN_COLUMN = re.compile(
     r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_"
-    r"|(contacts|wave_elevation_m)$"
+    r"|(contacts|wave_elevation_m|water_north_mps|water_east_mps)$"
 )
 # Usual names of command channels; others are known from the vessel
 COMMAND = re.compile(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import nan
 from operator import attrgetter
 
-from boatsim.physics.base import Force, make_motion
+from boatsim.physics.base import Force, WaterFlow, make_motion
 from boatsim.physics.debugging import python_function
 from boatsim.physics.signals import AXES, COMPONENTS, motion_signals
 from boatsim.physics.vessel.wave_field import wave_field
@@ -19,6 +19,7 @@ from boatsim.simulate.tracking_errors import GOAL
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 SENSE_VALUES = attrgetter("psi", "r", "ax", "ay", "u", "x", "y")  # of a Sense, in the same order
 WAVE_ELEVATION = "wave_elevation_m"
+WATER_VELOCITY = ("water_north_mps", "water_east_mps")
 REFERENCE = "reference_"  # prefix of estimates that are reference signals of a controller
 
 
@@ -29,8 +30,9 @@ class RunLog:
     as the controller sent it, before its range limits it; `goal_` is a goal, nan where none is in
     force; `actual_` is an actuator; `sensed_` and `camera_` are measurements. `force_` is the sum
     of all effects and `wind_` that of the effects of air. `wave_elevation_m` is the elevation of
-    the sea at the vessel's origin, upward, where the waves of an effect have one. `estimate_` is an
-    estimate of the controller.
+    the sea at the vessel's origin, upward, where the waves of an effect have one.
+    `water_north_mps` and `water_east_mps` are the velocity of the water there over the ground,
+    where an effect moves it. `estimate_` is an estimate of the controller.
 
     Attributes:
         scenario: The scenario.
@@ -68,6 +70,7 @@ class RunLog:
         self._goals = [key for key in self.scenario.goal_keys if key not in vessel.commands]
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
         self._waves = wave_field(vessel.effects)
+        self._water_moves = any(isinstance(effect, WaterFlow) for effect in vessel.effects)
         self.due = 0.0
         file = self.scenario.file
         rows = file.duration / max(file.log, file.step)
@@ -87,6 +90,8 @@ class RunLog:
             columns += map("wind_{}".format, components)
         if len(self._waves):
             columns.append(WAVE_ELEVATION)
+        if self._water_moves:
+            columns += WATER_VELOCITY
         columns.append("contacts")
         for name in self._estimates:
             columns += [f"estimate_{name}", f"estimate_{name}_low", f"estimate_{name}_high"]
@@ -135,6 +140,8 @@ class RunLog:
             row += map(self._wind_wrench(state).__getitem__, self._axes)
         if len(self._waves):
             row.append(float(self._waves.elevation(state.x, state.y, state.t)))
+        if self._water_moves:
+            row += engine.water_velocity()
         row.append(engine.contacts)
         for name in self._estimates:
             row += estimates[name]

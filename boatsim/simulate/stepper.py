@@ -263,6 +263,20 @@ class Stepper(ABC):
         self._state_of_force[:] = self._joint_state()
         return Wrench(**dict(zip(self._axes_of_force, self._body_force(self.t), strict=True)))
 
+    def water_velocity(self) -> tuple[float, float]:
+        """Return the velocity of the water over the ground at the vessel's origin [m/s].
+
+        It is that to north and to east.
+        """
+        state = self.state
+        north, east = self._water_velocity(state.t, state.x, state.y)
+        return float(north), float(east)
+
+    @cached_property
+    def _water_velocity(self) -> Callable[[float, float, float], tuple[float, float]]:
+        """`water_velocity` of this vessel, a function of time and place."""
+        return partial_call(self.code, "water_velocity", ..., ..., ..., self._values, self._on)
+
     @cached_property
     def _axes_of_force(self) -> list[str]:
         """Names of the force components that the vessel's degrees of freedom have."""

@@ -273,6 +273,7 @@ def _signal_tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
         "Yaw moments": names_matching("(force|wind)_.*_Nm"),
         "Heading": names_matching(".*psi_rad"),
         "Waves": names_matching("wave_elevation_m"),
+        "Current": names_matching("water_(north|east)_mps"),
         "Position": select_signals_and_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
     return [_signal_plot(title, members) for title, members in groups.items() if members]

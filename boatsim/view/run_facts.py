@@ -25,7 +25,7 @@ ENVIRONMENT = {  # heading -> effects of the library that belong to it
         "wave_forcing",
         "yaw_rate_waves",
     ),
-    "Current": ("current",),
+    "Current": ("current", "current_table"),
 }
 Settings = Mapping[str, object]
 

@@ -25,6 +25,7 @@ MOTION = {  # title of a plot -> signals that it shows, with their names
     "Pitch": {"theta_rad": "pitch"},
     "Heave": {"z_m": "heave, down"},
     "Waves": {"wave_elevation_m": "elevation of the sea at the vessel, up"},
+    "Current": {"water_north_mps": "north", "water_east_mps": "east"},
 }
 
 

@@ -192,8 +192,8 @@ def _evaluate(
     else:
         moves[over] = value
     if hasattr(kind, "water_velocity"):
-        north, east = kind.water_velocity(effect.values())
-        moving = make_motion((north, east), **moves)
+        flow: Any = effect
+        moving = make_motion(flow.velocity_at(*map(moves.get, "txy", (0.0, 0.0, 0.0))), **moves)
         return moving.ur, moving.vr
     arguments: list[Any] = [make_motion(**moves), effect.values()]
     if hasattr(kind, "reaction"):

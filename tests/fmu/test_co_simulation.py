@@ -26,6 +26,7 @@ except NoCompiler:
 
 INTERVAL = 0.1  # [s] communication step, five integration steps
 SAME = 1e-9  # largest difference, in SI units
+CURRENT_TABLE = Path(__file__).parents[1] / "data" / "current.csv"
 # planar; with lags and rate limits; six degrees of freedom; one
 VESSELS = (
     "trial_boat",
@@ -157,6 +158,16 @@ def test_a_current_carries_a_boat_and_may_change(fmu: Make) -> None:
         still = boat.get("force_X_N")[0]
         boat.set({"current.north": 0.5})
         assert boat.get("force_X_N")[0] > still + 0.1
+
+
+def test_a_current_of_a_table_adds_to_the_input_of_a_current(fmu: Make) -> None:
+    table = {"use": "current_table", "file": str(CURRENT_TABLE), "start": 4.0, "scale": 0.5}
+    vessel = load_vessel("trial_boat").with_effect(table)
+    together = vessel.with_effect({"use": "current", "north": 0.3, "east": -0.2})
+    names, commands = names_of_outputs(vessel), random_commands(vessel, 20)
+    flow = {"current.north": 0.3, "current.east": -0.2}
+    found = simulated(fmu(vessel), commands, INTERVAL, names, flow)
+    np.testing.assert_allclose(found, engine_run(together, commands), rtol=SAME, atol=SAME)
 
 
 def test_wind_acts_through_its_inputs_once_drag_areas_are_set(fmu: Make) -> None:

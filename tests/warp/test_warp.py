@@ -30,6 +30,7 @@ from boatsim.warp.runtime import import_warp
 from boatsim.warp.translate import Translation
 from boatsim.warp.values import REAL, ROW, WHOLE
 
+CURRENT = Path(__file__).parents[1] / "data" / "current.csv"
 MODELS = sorted(path.parent.name for path in Path("models").glob("*/vessel.toml"))
 KINDS = (  # vessels whose degrees of freedom, hulls and drives all differ
     "catamaran",
@@ -111,6 +112,14 @@ def test_a_thousand_boats_of_any_vessel_go_as_the_twin(name: str) -> None:
 def test_a_batch_without_mujoco_goes_as_the_twin(double: bool) -> None:
     batch = Batch(vessel.load_vessel("joystick_boat"), 100, mujoco=False, double=double)
     assert furthest(batch, 100) < (1e-9 if double else 1e-4)
+
+
+@pytest.mark.parametrize("mujoco", [False, True])
+def test_boats_in_the_current_of_a_table_go_as_the_twin(mujoco: bool) -> None:
+    table = {"use": "current_table", "file": str(CURRENT), "start": 1.5}
+    boat = vessel.load_vessel("joystick_boat").with_effect(table)
+    batch = Batch(boat, 100, mujoco=mujoco, double=not mujoco)
+    assert furthest(batch, 100) < (1e-4 if mujoco else 1e-9)
 
 
 def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:

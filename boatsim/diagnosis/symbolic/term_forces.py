@@ -79,13 +79,17 @@ class FittedRecording:
             fields[PLACES[axis]] = self.states[:, i]
             fields[RATES[axis]] = rates[:, i]
         c, s = np.cos(fields["psi"]), np.sin(fields["psi"])
-        north, east = (0.0, 0.0)
+        water, carried = np.zeros((rows, 2)), np.zeros((rows, 2))
         if "surge" in axes:
-            north, east = program.estimation_functions.water_velocity(
-                self.parameter_values, self.effect_switches
-            )
+            code = program.estimation_functions
+            given = self.parameter_values, self.effect_switches
+            for i, (t, x, y) in enumerate(zip(fields["t"], fields["x"], fields["y"], strict=True)):
+                water[i] = code.water_velocity(t, x, y, *given)
+                carried[i] = code.water_displacement(t, *given)
+        north, east = water.T
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}
-        fields |= {"water_north": np.full(rows, north), "water_east": np.full(rows, east)}
+        fields |= {"water_north": north, "water_east": east}
+        fields |= {"carried_north": carried[:, 0], "carried_east": carried[:, 1]}
         fields["ur"] = fields["u"] - c * north - s * east
         fields["vr"] = fields["v"] - c * east + s * north
         return Motion(**fields)

@@ -324,7 +324,7 @@ def hull_load(m: Any, p: Array, first: Any) -> Wrench:
     north_x, north_y, north_z = cp * ct, cp * st * sf - sp * cf, sp * sf + cp * st * cf
     east_x, east_y, east_z = sp * ct, cp * cf + sp * st * sf, sp * st * cf - cp * sf
     down_x, down_y, down_z = -st, ct * sf, ct * cf
-    north, east = m.x - m.water_north * m.t, m.y - m.water_east * m.t
+    north, east = m.x - m.carried_north, m.y - m.carried_east
     cells, waves = int(p[first]), int(p[first + 1])
     X = Y = Z = K = M = N = 0.0
     for i in range(cells):

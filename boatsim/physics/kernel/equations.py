@@ -1,11 +1,20 @@
 """Generates the equations of motion for any degrees of freedom, without zero terms.
 
-    M nu' = f - C(nu) nu + M_water nu_c',   nu = J(q) q'
+    M nu' = f - C(nu) nu + M_water nu_c' + M_hull R' a_c,   nu = J(q) q'
 
 q are the joint coordinates (x, y, z, phi, theta, psi) that are free, nu the velocities in body
-axes, and nu_c the velocity of a uniform current in body axes, which changes as the hull turns. The
+axes, and nu_c the velocity of the current in body axes, which changes as the hull turns. The
 Coriolis force of added mass and ballast belongs to the laws of those effects. State s = (q, q'),
 SNAME.
+
+The water around the hull is taken as uniform, with the velocity V(t, x, y) at the origin of motion.
+Where V varies, two accelerations act. The added mass feels that of the water at the hull, dV/dt
+along the path of the hull, as each section of a slender hull does (M. J. Lighthill, Note on the
+swimming of slender fish, J. Fluid Mech. 9, 1960). The pressure that accelerates the water itself
+acts on the displaced mass, which is the mass of a floating hull with its ballast: it follows the
+water, a_c = DV/Dt (T. R. Auton, J. C. R. Hunt and M. Prud'homme, The force exerted on a body in
+inviscid unsteady non-uniform rotational flow, J. Fluid Mech. 197, 1988). Both are dV/dt where V
+depends on time alone, and where the hull drifts with the water.
 
 The body axes are fixed in the hull if it may pitch, or heave and roll (`HULL_FIXED_AXES`).
 Otherwise they turn with the heading alone and remain level when the hull rolls, as is usual in
@@ -97,6 +106,10 @@ class Kinematics:
     turning: list[SymbolicSum]  # (3,) angular velocity of the axes
     drift: list[SymbolicSum]  # (6,) J' q': body acceleration at constant joint rates
     water: list[SymbolicSum]  # (3,) velocity of the current in body axes
+    # (3,) rate of that velocity at the hull, in axes that do not turn; zero if it does not vary
+    water_rate: list[SymbolicSum]
+    # (3,) acceleration of the water itself; zero if its velocity does not vary
+    water_acceleration: list[SymbolicSum]
 
     def jacobian_column(self, i: int) -> list[SymbolicSum]:
         """Return the symbolic body velocities (6,) per unit rate of coordinate i."""
@@ -106,12 +119,13 @@ class Kinematics:
 class EquationWriter:
     """Generates the source of the equations of motion for one set of degrees of freedom."""
 
-    def __init__(self, dof: tuple[str, ...], centred: bool) -> None:
+    def __init__(self, dof: tuple[str, ...], centred: bool, varying_water: bool = False) -> None:
         """Set the degrees of freedom.
 
         Args:
             dof: The degrees of freedom.
             centred: Whether the mass centre is the origin of motion.
+            varying_water: Whether the velocity of the water may vary with time and place.
         """
         self.free = [i for i, axis in enumerate(AXES) if axis in dof]
         self.set = frozenset(dof)
@@ -120,6 +134,8 @@ class EquationWriter:
             has_square_jacobian(self.set),
             centred,
         )
+        self.moves_horizontally = bool({0, 1} & set(self.free))
+        self.varying_water = varying_water and self.moves_horizontally
         self.n = len(self.free)
 
     # Kinematics
@@ -187,28 +203,66 @@ class EquationWriter:
         drift = list(map(neg, cross_product(turning, nu[:3]))) + lines.generate_assignments(
             "bend", bend
         )
-        water = [ZERO, ZERO, ZERO]
-        if current and {0, 1} & set(self.free):
-            lines.append_line("north, east = water_velocity(p, on)")
-            water = [
-                lines.generate_assignment(
-                    f"{n}_water", R[0][i] * symbol("north") + R[1][i] * symbol("east")
-                )
-                for i, n in enumerate("uvw")
-            ]
-        return Kinematics(R, J, nu, turning, drift, water)
+        water = rate = acceleration = [ZERO, ZERO, ZERO]
+        if current and self.moves_horizontally:
+            lines.append_line(f"north, east = water_velocity({self.place_text()}, p, on)")
+            water = self.generate_horizontal_vector(lines, R, "water", ("north", "east"))
+        if current and self.varying_water:
+            self.generate_water_change(lines)
+            rate = self.generate_horizontal_vector(lines, R, "rate", ("rate_north", "rate_east"))
+            acceleration = self.generate_horizontal_vector(
+                lines, R, "gain", ("gain_north", "gain_east")
+            )
+        return Kinematics(R, J, nu, turning, drift, water, rate, acceleration)
+
+    def place_text(self) -> str:
+        """Return the source text of time and place of the hull."""
+        return f"t, {self.coordinate_symbol(0)}, {self.coordinate_symbol(1)}"
+
+    def generate_horizontal_vector(
+        self, lines: CodeLines, R: list[list[SymbolicSum]], name: str, parts: tuple[str, str]
+    ) -> list[SymbolicSum]:
+        """Generate the components (3,) in body axes of a horizontal vector; return their symbols.
+
+        Args:
+            lines: The function so far.
+            R: Rotation matrix from body to earth axes.
+            name: Ending of the names of the variables.
+            parts: Variables of the components to north and east.
+        """
+        north, east = map(symbol, parts)
+        found = []
+        for i, axis in enumerate("uvw"):
+            component = R[0][i] * north + R[1][i] * east
+            found.append(lines.generate_assignment(f"{axis}_{name}", component))
+        return found
+
+    def generate_water_change(self, lines: CodeLines) -> None:
+        """Generate the rate of the water's velocity along the hull's path, and along its own."""
+        changes = [f"{part}_{by}" for part in ("north", "east") for by in "txy"]
+        lines.append_line(f"{', '.join(changes)} = water_change({self.place_text()}, p, on)")
+        along_hull = (self.rate_symbol(0), self.rate_symbol(1))
+        along_water = (symbol("north"), symbol("east"))
+        for name, (xd, yd) in (("rate", along_hull), ("gain", along_water)):
+            for part in ("north", "east"):
+                t, x, y = (symbol(f"{part}_{by}") for by in "txy")
+                lines.append_line(f"{name}_{part} = {t + x * xd + y * yd}")
 
     def motion_constructor_text(self, frame: Kinematics) -> str:
         """Return the source text of the `Motion` object that is passed to the force laws."""
         through = map(sub, frame.nu[:3], frame.water)
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
-        over_ground = ("north", "east") if {0, 1} & set(self.free) else ("0.0", "0.0")
+        over_ground = ("north", "east") if self.moves_horizontally else ("0.0", "0.0")
+        carried = tuple(f"{velocity} * t" for velocity in over_ground)
+        if self.varying_water:
+            carried = ("carried_north", "carried_east")
         values = [
             *map(str, map(self.coordinate_symbol, range(6))),
             *map(str, frame.nu),
             *map(str, through),
             *psi,
             *over_ground,
+            *carried,
         ]
         assert len(values) + 1 == len(Motion._fields)
         return f"Motion(t, {', '.join(values)})"
@@ -217,12 +271,32 @@ class EquationWriter:
     # ------------------------------------------------------------------------------------------
 
     def current_acceleration_force(self, frame: Kinematics, axis: int) -> SymbolicSum:
-        """Return one component of the added-mass force by a current that turns in body axes.
+        """Return one component of the force by the acceleration of the water.
 
-        The current is uniform; in the axes of a turning hull its velocity changes.
+        On the added mass acts the rate of the water's velocity in body axes: it changes as the
+        hull turns, and where the current varies. The ballast is part of the displaced mass, on
+        which the acceleration of the water itself acts.
         """
         away = map(neg, cross_product(frame.turning, frame.water))
-        return dot_product((mass_matrix_entry(WATER, axis, j) for j in LINEAR), away)
+        rate = map(add, away, frame.water_rate)
+        on_water = dot_product((mass_matrix_entry(WATER, axis, j) for j in LINEAR), rate)
+        ballast = (mass_matrix_entry(HULL, axis, j) for j in LINEAR)
+        return on_water + dot_product(ballast, frame.water_acceleration)
+
+    def displaced_mass_force(self, frame: Kinematics) -> list[SymbolicSum]:
+        """Return the force (6,) of the pressure that accelerates the water, without the ballast.
+
+        It acts on the mass that the hull displaces, its own, at the mass centre: the slope of the
+        surface to which this pressure belongs, a / g, does not heel the hull.
+        """
+        force = [symbol("k[0]") * a for a in frame.water_acceleration]
+        return force + cross_product(self.mass_centre(), force)
+
+    def mass_centre(self) -> list[SymbolicSum]:
+        """Return the place (3,) of the mass centre relative to the origin of motion."""
+        if self.centred:
+            return [ZERO, ZERO, ZERO]
+        return [symbol("k[1]"), ZERO, symbol("k[2]") if self.hull_fixed_axes else ZERO]
 
     def generate_rigid_body_force(self, lines: CodeLines, frame: Kinematics) -> list[SymbolicSum]:
         """Return symbols of the rigid body's Coriolis and centripetal force (6,).
@@ -233,9 +307,7 @@ class EquationWriter:
         spin = frame.turning
         p, q, r = frame.nu[3:]
         at_centre = cross_product(spin, frame.nu[:3])
-        lever = [ZERO, ZERO, ZERO]
-        if not self.centred:
-            lever = [symbol("k[1]"), ZERO, symbol("k[2]") if self.hull_fixed_axes else ZERO]
+        lever = self.mass_centre()
         at_centre = list(map(add, at_centre, cross_product(spin, cross_product(spin, lever))))
         force = lines.generate_assignments("rigid", [-(m * a) for a in at_centre])
         moment = [ZERO, ZERO, ZERO]
@@ -251,8 +323,9 @@ class EquationWriter:
 
         Source lines that evaluate the force laws are added.
         """
-        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+        self.generate_wrench(lines, frame)
         rigid = self.generate_rigid_body_force(lines, frame)
+        displaced = self.displaced_mass_force(frame)
         found = []
         for i, component in enumerate(Wrench._fields):
             more = symbol(f"{extra}[{self.free.index(i)}]") if i in self.free else ZERO
@@ -261,8 +334,19 @@ class EquationWriter:
                 + more
                 + rigid[i]
                 + self.current_acceleration_force(frame, i)
+                + displaced[i]
             )
         return found
+
+    def generate_wrench(self, lines: CodeLines, frame: Kinematics) -> None:
+        """Generate the line that evaluates the force laws of all effects."""
+        self.generate_carried_water(lines)
+        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+
+    def generate_carried_water(self, lines: CodeLines) -> None:
+        """Generate the displacement of the water on which waves travel, where it is no product."""
+        if self.varying_water:
+            lines.append_line("carried_north, carried_east = water_displacement(t, p, on)")
 
     def generate_state_unpacking(self, lines: CodeLines) -> None:
         """Generate the line that unpacks a state array into variables of coordinates and rates."""
@@ -407,7 +491,7 @@ class EquationWriter:
         lines = CodeLines()
         self.generate_state_unpacking(lines)
         frame = self.generate_kinematics(lines)
-        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+        self.generate_wrench(lines, frame)
         lines.append_line(
             f"return {self.tuple_text([f'f.{Wrench._fields[i]}' for i in self.free])}"
         )
@@ -421,6 +505,7 @@ class EquationWriter:
         lines = CodeLines()
         self.generate_state_unpacking(lines)
         frame = self.generate_kinematics(lines)
+        self.generate_carried_water(lines)
         motion = self.motion_constructor_text(frame)
         lines.append_line(
             f"advance_motion_memory({motion}, memory, dt, p, on, act, np.int64(HELD))"
@@ -507,18 +592,22 @@ class EquationWriter:
             lines.append_line(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
         lines.append_line("on = ()")
         frame = self.generate_kinematics(lines)
-        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+        self.generate_wrench(lines, frame)
         added = [
             [mass_matrix_entry(WATER, i, j) + mass_matrix_entry(HULL, i, j) for j in range(6)]
             for i in range(6)
         ]
         needed = [a for a in range(6) if any(frame.J[a][i] for i in self.free)]
+        displaced = self.displaced_mass_force(frame)
         load = {}
         for a in needed:
             bent = dot_product(added[a], frame.drift)
             load[a] = lines.generate_assignment(
                 f"load{a}",
-                symbol(f"f.{Wrench._fields[a]}") + self.current_acceleration_force(frame, a) - bent,
+                symbol(f"f.{Wrench._fields[a]}")
+                + self.current_acceleration_force(frame, a)
+                + displaced[a]
+                - bent,
             )
         for b, i in enumerate(order):
             force = sum_expressions(frame.J[a][i] * load[a] for a in needed)

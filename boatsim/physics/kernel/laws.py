@@ -32,8 +32,23 @@ def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
     raise NotImplementedError
 
 
-def water_velocity(p: Array, on: Any) -> tuple[float, float]:
-    """Return the velocity of the water over the ground (north, east) [m/s]."""
+def water_velocity(t: float, x: float, y: float, p: Array, on: Any) -> tuple[float, float]:
+    """Return the velocity of the water over the ground (north, east) at a time and place [m/s]."""
+    raise NotImplementedError
+
+
+def water_change(
+    t: float, x: float, y: float, p: Array, on: Any
+) -> tuple[float, float, float, float, float, float]:
+    """Return the derivatives of the velocity of the water by time and place.
+
+    They are those of the velocity north by time [m/s^2], x and y [1/s], then of that east.
+    """
+    raise NotImplementedError
+
+
+def water_displacement(t: float, p: Array, on: Any) -> tuple[float, float]:
+    """Return how far the water on which waves travel has moved since t = 0 (north, east) [m]."""
     raise NotImplementedError
 
 

@@ -10,7 +10,14 @@ import numpy as np
 from boatsim.physics.kernel.compiling import inlined, lean
 from boatsim.physics.signals import MeasuredMotion, Motion
 
-from .laws import HELD, advance_motion_memory, water_velocity, wrench
+from .laws import (
+    HELD,
+    advance_motion_memory,
+    water_change,
+    water_displacement,
+    water_velocity,
+    wrench,
+)
 """
 
 
@@ -213,13 +220,14 @@ def observation_functions(w: EquationWriter) -> list[str]:
     ]
 
 
-def motion_module_text(dof: tuple[str, ...], centred: bool) -> str:
+def motion_module_text(dof: tuple[str, ...], centred: bool, varying_water: bool = False) -> str:
     """Return the source of `motion.py`, the equations of motion of a vessel.
 
     Args:
         dof: Degrees of freedom of the vessel.
         centred: Whether the mass centre is the origin of motion.
+        varying_water: Whether the velocity of the water may vary with time and place.
     """
-    w = EquationWriter(dof, centred)
+    w = EquationWriter(dof, centred, varying_water)
     text = [*motion_module_head(w), *dynamics_functions(w), *observation_functions(w)]
     return "\n".join(text)

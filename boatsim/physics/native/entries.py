@@ -43,7 +43,8 @@ COMMON: Mapping[str, Entry] = {
     "advance_memory_of_motion": Entry((REAL, VECTOR, REAL, VECTOR, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
-    "water_velocity": Entry((VECTOR, VECTOR), tuple_of_numbers),
+    "water_displacement": Entry((REAL, VECTOR, VECTOR), tuple_of_numbers),
+    "water_velocity": Entry((REAL, REAL, REAL, VECTOR, VECTOR), tuple_of_numbers),
 }
 FLEET = records.FleetArrays
 SIMULATION: Mapping[str, Entry] = {

@@ -1,7 +1,11 @@
 """Vessels: file schema, the `Vessel` dataclass, its channel bindings, and loading."""
 
 from boatsim.physics.vessel.bindings import check_bindings
-from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
+from boatsim.physics.vessel.effect_tables import (
+    effect_from_table,
+    effect_name,
+    with_absolute_paths,
+)
 from boatsim.physics.vessel.estimated import estimated_number_sd, sd_of_corrected_estimates
 from boatsim.physics.vessel.loading import load_vessel, merge_load_conditions, with_effect_tables
 from boatsim.physics.vessel.loads import apply_load_values
@@ -26,6 +30,7 @@ __all__ = [
     "check_bindings",
     "effect_from_table",
     "effect_name",
+    "with_absolute_paths",
     "load_vessel",
     "merge_load_conditions",
     "estimated_number_sd",

@@ -27,13 +27,27 @@ def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> 
     del settings["use"]
     try:
         kind: type[Effect] = load_class("effect", use, folder)
-        for name in kind.paths:
-            value = settings.get(name)
-            if isinstance(value, str) and value:
-                settings[name] = str((folder / value).resolve())
-        return kind.from_settings(settings)
+        return kind.from_settings(with_absolute_paths(kind, settings, folder))
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
+
+
+def with_absolute_paths(
+    kind: type[Effect], settings: Mapping[str, object], folder: Path
+) -> dict[str, object]:
+    """Return the settings of an effect in which all paths are absolute.
+
+    Args:
+        kind: Class of the effect.
+        settings: The settings.
+        folder: Folder from which a relative path starts.
+    """
+    found = dict(settings)
+    for name in kind.paths:
+        value = found.get(name)
+        if isinstance(value, str) and value:
+            found[name] = str((folder / value).resolve())
+    return found
 
 
 def effect_name(table: Mapping[str, object]) -> str:

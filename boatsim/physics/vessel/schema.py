@@ -22,6 +22,8 @@ RESERVED_COLUMNS = (
     "t_s",
     "contacts",
     "wave_elevation_m",
+    "water_north_mps",
+    "water_east_mps",
     *POSE,
     *RATES,
     *map("force_{}".format, COMPONENTS.values()),

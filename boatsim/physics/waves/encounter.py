@@ -22,5 +22,5 @@ def heading_of_waves(bearing: float, m: Any) -> tuple[float, float, float]:
         through the water along the direction of the waves.
     """
     ahead, across = cos(bearing), sin(bearing)  # direction of the waves in earth axes
-    run = ahead * (m.x - m.water_north * m.t) + across * (m.y - m.water_east * m.t)
+    run = ahead * (m.x - m.carried_north) + across * (m.y - m.carried_east)
     return m.cos_psi * ahead + m.sin_psi * across, m.cos_psi * across - m.sin_psi * ahead, run

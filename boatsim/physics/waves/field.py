@@ -6,6 +6,7 @@ from typing import Self
 import numpy as np
 
 from boatsim.physics.signals import Array
+from boatsim.physics.waves.water_path import WaterPath
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,9 @@ class WaveField:
         wave_number: Wave numbers (N,) [rad/m].
         direction: Directions (N,) to which the waves run, clockwise from x [rad].
         phase: Phases (N,) at the origin at t = 0 [rad]; a wave has a crest at phase 0.
-        water_velocity: Velocity of the water over the ground along x and y [m/s].
+        water_velocity: Velocity of the water over the ground along x and y [m/s], the part that is
+            steady.
+        water_paths: Motions of the water in addition, of which the velocity varies with time.
     """
 
     amplitude: Array
@@ -30,6 +33,7 @@ class WaveField:
     direction: Array
     phase: Array
     water_velocity: tuple[float, float] = (0.0, 0.0)
+    water_paths: tuple[WaterPath, ...] = ()
 
     @classmethod
     def calm(cls) -> Self:
@@ -66,6 +70,9 @@ class WaveField:
         aside = self.wave_number * np.sin(self.direction)
         north = north - self.water_velocity[0] * time
         east = east - self.water_velocity[1] * time
+        for path in self.water_paths:
+            moved = path.displacement(time)
+            north, east = north - moved[0], east - moved[1]
         if total.ndim == 0:
             angle = self.frequency * time - ahead * north - aside * east + self.phase
             return np.float64(np.sum(self.amplitude * np.cos(angle)))
@@ -87,4 +94,5 @@ class WaveField:
             np.append(self.direction, other.direction),
             np.append(self.phase, other.phase),
             self.water_velocity,
+            self.water_paths,
         )

@@ -143,7 +143,7 @@ def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> N
 def test_an_array_of_another_type_is_refused() -> None:
     code = Program(load_vessel("joystick_boat")).simulation_functions
     with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):
-        code.water_velocity(np.zeros(3, dtype=np.float32), np.zeros(3))
+        code.water_displacement(0.0, np.zeros(3, dtype=np.float32), np.zeros(3))
 
 
 @pytest.mark.slow
