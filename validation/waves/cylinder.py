@@ -148,16 +148,26 @@ def _numbers(
 
 
 class Refinement(NamedTuple):
-    """Largest errors over all axes and frequencies with one mesh."""
+    """Largest errors of an axis over all frequencies, for each of `PANELS`."""
 
-    panels: int
-    added_mass: float
-    damping: float
-    excitation: float
+    axis: str
+    added_mass: list[float]
+    damping: list[float]
+    excitation: list[float]
 
 
-def mesh_convergence(folder: Path, depth: float = DEPTHS[0]) -> list[Refinement]:
-    """Return the errors of meshes whose panels are halved twice.
+def panel_count(panels: tuple[int, int, int]) -> int:
+    """Return the number of triangles of a mesh.
+
+    Args:
+        panels: Numbers of panels around it, over its side, and over the radius of its bottom.
+    """
+    around, down, inward = panels
+    return around * (2 * (down + inward) - 1)  # one triangle each at the centre of the bottom
+
+
+def mesh_convergence(folder: Path, depth: float) -> list[Refinement]:
+    """Return the errors of meshes whose panels are halved twice, for each axis.
 
     Args:
         folder: Working folder.
@@ -166,12 +176,15 @@ def mesh_convergence(folder: Path, depth: float = DEPTHS[0]) -> list[Refinement]
     Raises:
         BadInput: Capytaine is not installed.
     """
+    by_mesh = [compared(folder, depth, panels) for panels in PANELS]
     results = []
-    for panels in PANELS:
-        rows = compared(folder, depth, panels)
-        worst = [max(row[place].error for row in rows) for place in (3, 4, 5)]
-        around, down, inward = panels
-        # Squares of the mesh are two triangles, but for those at the centre of the bottom
-        count = around * (2 * (down + inward) - 1)
-        results.append(Refinement(count, *worst))
+    for axis in COMPARED:
+        columns: list[list[float]] = []
+        for name in ("added_mass", "damping", "excitation"):
+            column = []
+            for rows in by_mesh:
+                errors = [getattr(row, name).error for row in rows if row.axis == axis]
+                column.append(max(errors))
+            columns.append(column)
+        results.append(Refinement(axis, *columns))
     return results

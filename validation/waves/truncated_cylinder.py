@@ -22,7 +22,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 
 Complex = NDArray[np.complex128]
-MODES = 200  # of each region; half as many change no coefficient by more than 0.2 %
+MODES = 400  # of each region; half as many change surge and heave by 0.03 %, pitch by 0.5 % at most
 SURGE, HEAVE, PITCH = 0, 2, 4  # rows of the matrices
 
 
