@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 from scipy.special import h1vp
 
 from boatsim.physics.particulars import GRAVITY
@@ -84,3 +85,31 @@ def test_a_cylinder_down_to_the_bed_has_the_force_of_a_pile(number: float) -> No
     pile = 4.0 * cylinder.density * GRAVITY * np.tanh(number * 1.5)
     pile /= number**2 * abs(h1vp(1, number))
     assert abs(found.excitation[SURGE]) == pytest.approx(pile, rel=2e-3)
+
+
+def test_added_mass_and_damping_obey_the_relations_of_kramers_and_kronig() -> None:
+    """Added mass less 2 / pi P int b(s) / (s^2 - w^2) ds is that at infinite frequency for all w.
+
+    Source: T. F. Ogilvie, Recent progress toward the understanding and prediction of ship motions,
+    5th Symposium on Naval Hydrodynamics, 1964.
+    """
+    cylinder, modes = Cylinder(1.0, 0.5, 1.5), 20
+    w = frequency(cylinder, 1.0) / 3.0 * np.linspace(0.01, 12.0, 201)
+    diagonals = []
+    for one in w:
+        found = cylinder_coefficients(cylinder, float(one), modes)
+        diagonals.append([found.damping[axis, axis] for axis in AXES])
+    damping = CubicSpline(np.append(0.0, w), np.vstack([np.zeros(3), diagonals]))
+    infinite = []
+    for number in (0.2, 0.6, 1.0):
+        own = frequency(cylinder, number)
+        s = np.linspace(0.0, w[-1], 20001) + 1e-6
+        # the principal value of the integral of 1 / (s^2 - w^2) over all s is zero
+        excess = (damping(s) - damping(own)) / (s**2 - own**2)[:, None]
+        rest = 0.5 / own * np.log((w[-1] + own) / (w[-1] - own))  # beyond, where damping is zero
+        integral = np.trapezoid(excess, s, axis=0) - damping(own) * rest
+        found = cylinder_coefficients(cylinder, own, modes)
+        added = np.array([found.added_mass[axis, axis] for axis in AXES])
+        infinite.append(added - 2.0 / np.pi * integral)
+    for one in infinite[1:]:
+        assert one == pytest.approx(infinite[0], rel=1e-3)

@@ -116,7 +116,9 @@ def print_righting_arms() -> None:
         print(f"{words}\nheel deg      GZ m   exact m")
         rows = arms()
         for arm in rows:
-            print(f"{arm.heel:8.0f}  {arm.found:8.4f}  {arm.exact:8.4f}")
+            # + 0.0: rounding leaves no negative zero
+            cells = (round(arm.found, 4) + 0.0, round(arm.exact, 4) + 0.0)
+            print(f"{arm.heel:8.0f}  {cells[0]:8.4f}  {cells[1]:8.4f}")
         errors = [righting_arms.largest_error(arms(n, n // 2)) for n in (24, 48, 96)]
         text = ", ".join(f"{100 * error:.2f} %" for error in errors)
         print(f"largest error over the largest arm with 24, 48 and 96 meridians: {text}")
