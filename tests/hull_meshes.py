@@ -1,5 +1,7 @@
 """Meshes of bodies with closed forms, in SNAME axes."""
 
+from pathlib import Path
+
 import numpy as np
 from scipy.spatial import ConvexHull
 
@@ -66,3 +68,17 @@ def wigley(length: float, beam: float, draught: float, parts: int) -> ClosedMesh
     ):
         found.append(np.stack(deck, axis=1))
     return closed_mesh(np.concatenate(found), "wigley")
+
+
+def catamaran(hull: ClosedMesh, spacing: float) -> ClosedMesh:
+    """Two equal hulls whose centre planes are a distance apart."""
+    sides = [hull.moved(0.0, side * 0.5 * spacing, 0.0).corners for side in (-1.0, 1.0)]
+    return closed_mesh(np.concatenate(sides), "catamaran")
+
+
+def written(mesh: ClosedMesh, path: Path) -> Path:
+    """A mesh as an OBJ file."""
+    lines = [f"v {x:.12g} {-y:.12g} {-z:.12g}" for x, y, z in mesh.points]
+    lines += ["f {} {} {}".format(*face) for face in mesh.faces + 1]
+    path.write_text("\n".join(lines) + "\n")
+    return path

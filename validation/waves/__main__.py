@@ -1,6 +1,7 @@
-"""`python -m validation.waves`: vessels in waves against the frequency domain and a recording.
+"""`python -m validation.waves`: hulls against published numbers, and vessels in waves.
 
-The recorded section needs Capytaine and the recordings; without them it is skipped.
+Hulls by the boundary element method need Capytaine, and the recorded section its recordings;
+without them they are skipped.
 """
 
 import argparse
@@ -9,7 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.waves import drift, hemisphere, response, section
+from validation.waves import (
+    cylinder,
+    drift,
+    hemisphere,
+    response,
+    righting_arms,
+    section,
+    wigley,
+)
 
 WORK = Path("out/validation/waves")
 STRONG = 0.3  # reflection above which the error of the drift is counted; below the drift is small
@@ -25,6 +34,104 @@ def print_hemisphere(folder: Path) -> None:
             f"{row.number:4.1f}  {row.axis:6}  {a[0]:9.4f}  {a[1]:.4f}"
             f"  {100 * (a[0] / a[1] - 1):4.1f} %    {b[0]:10.4f}  {b[1]:.4f}"
             f"  {100 * (b[0] - b[1]) / row.largest:4.1f} %"
+        )
+
+
+def print_cylinder(folder: Path) -> None:
+    """Print the coefficients of a truncated cylinder next to exact ones, and their convergence."""
+    print(
+        f"\nTruncated cylinder, draught {cylinder.DRAUGHT / cylinder.RADIUS:g} radii, against "
+        "expansions in eigenfunctions (C. J. R."
+    )
+    print(
+        "Garrett, J. Fluid Mech. 46, 1971; R. W. Yeung, Applied Ocean Research 3(3), 1981); error:"
+    )
+    print("difference over the largest value of the axis at this depth, excitation with its phase")
+    print(
+        "h / a  k a  axis   A / rho V   exact  error  B / rho V w   exact  error      |X|   exact"
+    )
+    for depth in cylinder.DEPTHS:
+        for row in cylinder.compared(folder, depth):
+            a, b, x = row.added_mass, row.damping, row.excitation
+            print(
+                f"{depth / cylinder.RADIUS:5.1f}  {row.number:3.1f}  {row.axis:5}"
+                f"  {a.found:10.4f}  {a.exact:.4f}  {100 * a.error:3.1f} %"
+                f"  {b.found:11.4f}  {b.exact:.4f} {100 * b.error:4.1f} %"
+                f"  {x.found:7.4f}  {x.exact:.4f}  {100 * x.error:4.1f} %"
+            )
+    print("largest error over all k a, by the number of panels")
+    counts = "".join(f"{cylinder.panel_count(panels):7d}" for panels in cylinder.PANELS)
+    print(f"h / a  axis   added mass{counts}    damping{counts}    excitation{counts}")
+    for depth in cylinder.DEPTHS:
+        for line in cylinder.mesh_convergence(folder, depth):
+            blocks = []
+            for errors in (line.added_mass, line.damping, line.excitation):
+                blocks.append("".join(f"{100 * error:5.1f} %" for error in errors))
+            print(
+                f"{depth / cylinder.RADIUS:5.1f}  {line.axis:5}            {blocks[0]}"
+                f"           {blocks[1]}              {blocks[2]}"
+            )
+
+
+def print_wigley(folder: Path) -> None:
+    """Print measured and computed responses of two Wigley hulls in head waves."""
+    print(
+        "\nWigley hulls in head waves at zero speed, held in surge, against model tests (J. M. J."
+    )
+    print(
+        "Journee, Delft University of Technology, report 909, 1992, tables 10-III and 10-IV): heave"
+    )
+    print(
+        "over the amplitude of the wave, pitch over 2 pi / L times it; panels: boundary elements,"
+    )
+    print("strips: excitation of strip_wave_loads from the mesh")
+    print("hull  wave / L  heave  panels          strips          pitch  panels          strips")
+    for hull in wigley.HULLS:
+        rows = wigley.responses(folder, hull)
+        for row in rows:
+            cells = []
+            for place in range(2):
+                measured = row.measured[place]
+                cells.append(f"{measured:5.2f}")
+                for found in (row.panels[place], row.strips[place]):
+                    cells.append(f"{found:6.3f} {100 * (found / measured - 1):+5.0f} %")
+            print(f"{row.hull:4}  {row.ratio:8.3f}  {'  '.join(cells)}")
+        for method in ("panels", "strips"):
+            errors = wigley.long_wave_errors(rows, method)
+            for place, axis in enumerate(("heave", "pitch")):
+                print(
+                    f"{hull.name}, waves of {wigley.LONG:g} L and more, {axis} by {method}: "
+                    f"{errors.within[place]} of {errors.rows} within 10 %, largest error "
+                    f"{100 * errors.largest[place]:.0f} %, mean {100 * errors.mean[place]:+.0f} %"
+                )
+
+
+def print_righting_arms() -> None:
+    """Print righting arms next to closed forms and a printed example."""
+    print("\nRighting arms of meshes against closed forms")
+    for words, arms in (
+        ("ellipsoid, semi-axes 2, 0.8 and 0.4 m, half immersed", righting_arms.arms_of_ellipsoid),
+        ("paraboloid of revolution (Archimedes)", righting_arms.arms_of_paraboloid),
+    ):
+        print(f"{words}\nheel deg      GZ m   exact m")
+        rows = arms()
+        for arm in rows:
+            # + 0.0: rounding leaves no negative zero
+            cells = (round(arm.found, 4) + 0.0, round(arm.exact, 4) + 0.0)
+            print(f"{arm.heel:8.0f}  {cells[0]:8.4f}  {cells[1]:8.4f}")
+        errors = [righting_arms.largest_error(arms(n, n // 2)) for n in (24, 48, 96)]
+        text = ", ".join(f"{100 * error:.2f} %" for error in errors)
+        print(f"largest error over the largest arm with 24, 48 and 96 meridians: {text}")
+    found, exact = righting_arms.archimedes()
+    print(
+        f"paraboloid floats upright above a relative density of {found:.4f}, by Archimedes "
+        f"{exact:.4f}"
+    )
+    print("box-shaped vessel of C. B. Barrass, D. R. Derrett, Ship Stability for Masters and Mates")
+    for heel, (arm, moment), (own, turning) in righting_arms.box_example():
+        print(
+            f"heel {heel:g} deg: GZ {own:.4f} m, printed {arm:g} m; moment {turning:.1f} t m, "
+            f"printed {moment:g} t m"
         )
 
 
@@ -65,11 +172,11 @@ def print_drift(folder: Path) -> None:
     print("series of T. H. Havelock, Proc. R. Soc. A 175, 1940; energy: relative error of its")
     print("conservation in the scattered waves")
     print(" k a   F / rho g a A^2   Havelock    error    energy")
-    for cylinder in drift.cylinder_drift(folder):
-        error = 100.0 * (cylinder.force / cylinder.exact - 1.0)
+    for one in drift.cylinder_drift(folder):
+        error = 100.0 * (one.force / one.exact - 1.0)
         print(
-            f"{cylinder.number:4.1f}  {cylinder.force:16.4f}  {cylinder.exact:9.4f}"
-            f"  {error:5.1f} %  {100.0 * cylinder.energy:6.1f} %"
+            f"{one.number:4.1f}  {one.force:16.4f}  {one.exact:9.4f}"
+            f"  {error:5.1f} %  {100.0 * one.energy:6.1f} %"
         )
     results = drift.section_drift(folder)
     print("\nMean drift of the ship section in deep water and beam waves, per length and square of")
@@ -122,11 +229,14 @@ def main() -> None:
     parser.add_argument("--work", type=Path, default=WORK, help="working folder")
     folder = parser.parse_args().work
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
+    print_righting_arms()
     if has_capytaine:
         print_hemisphere(folder)
+        print_cylinder(folder)
         print_drift(folder)
+        print_wigley(folder)
     else:
-        print("hemisphere and drift: skipped, Capytaine is not installed")
+        print("hulls by boundary elements: skipped, Capytaine is not installed")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():

@@ -1,9 +1,7 @@
 """Hull buoyancy: pressure of still water or waves on the submerged part of a hull's mesh."""
 
 from dataclasses import dataclass, field
-from functools import lru_cache
 from math import cos, sin
-from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from numba import njit
@@ -12,7 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import particulars
 from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.hull.floating import depth_of_volume
-from boatsim.physics.hull.mesh import ClosedMesh, read_closed_mesh
+from boatsim.physics.hull.mesh import ClosedMesh, mesh_of_file
 from boatsim.physics.hull.panels import CALM, hull_load, panel_table
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.waves.sea_parameters import SeaParameters
@@ -60,12 +58,6 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     )
 
 
-@lru_cache(maxsize=8)
-def _mesh_of_file(path: str, _changed: int, scale: float) -> ClosedMesh:
-    """Return the mesh of a file; it is read again after the file has changed."""
-    return read_closed_mesh(Path(path), scale)
-
-
 def hull_mesh(path: str, scale: float) -> ClosedMesh:
     """Return the mesh of a hull with its lowest point at z = 0.
 
@@ -76,8 +68,7 @@ def hull_mesh(path: str, scale: float) -> ClosedMesh:
     Raises:
         BadInput: It cannot be read, is not closed, or has too many triangles.
     """
-    changed = Path(path).stat().st_mtime_ns if Path(path).is_file() else 0
-    mesh = _mesh_of_file(path, changed, scale)
+    mesh = mesh_of_file(path, scale)
     if len(mesh.faces) > MOST_TRIANGLES:
         raise BadInput(
             f"{path}: {len(mesh.faces)} triangles; allowed in a simulation are {MOST_TRIANGLES}, "

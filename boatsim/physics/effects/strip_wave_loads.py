@@ -1,6 +1,6 @@
-"""Strip wave loads: forces of a sea on a hull in six degrees of freedom, from its particulars."""
+"""Strip wave loads: forces of a sea on a hull, from its particulars or the sections of its mesh."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import exp, pi, sqrt
 from typing import Any, ClassVar, Self
 
@@ -8,21 +8,31 @@ from numba import njit
 
 from boatsim.errors import BadInput
 from boatsim.physics import particulars
-from boatsim.physics.base import AXES, UNSET, Boat, Force, Wrench, param, wrench
+from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.debugging import interpreted
+from boatsim.physics.hull.floating import depth_of_volume
+from boatsim.physics.hull.mesh import mesh_of_file, time_of_change
+from boatsim.physics.hull.sections import HullSections, sections_of_file
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
-from boatsim.physics.waves.hull_strips import line_value, strip_hull, strip_place
+from boatsim.physics.waves.hull_strips import (
+    NO_SECTIONS,
+    line_value,
+    section_table,
+    strip_hull,
+    strip_place,
+)
 from boatsim.physics.waves.sea_parameters import SeaParameters
 from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
 from boatsim.physics.waves.strip_loads import EncounteredWave, wave_loads
 
 GRAVITY = particulars.GRAVITY
+ZERO_BY_DEFAULT = ("hull_spacing", "centre")
 POINTED = 0.2  # gyradius squared of a parabola that ends in points, over half the length squared
 
 
 @njit
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     """Return the force of a sea on the strips of a hull.
 
     It is a sum over wave components. The waves travel on the water, which moves with the current.
@@ -30,6 +40,8 @@ def law(m: Any, q: Any) -> Wrench:
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
         q: Parameters of the effect, with the names and units of its class.
+        p: Parameters and tables of all effects.
+        first: Index of the effect's table.
 
     Returns:
         Force [N] and moment [N m] in body axes.
@@ -50,7 +62,7 @@ def law(m: Any, q: Any) -> Wrench:
         if q.depth > 0.0:
             bed = exp(-2.0 * number * q.depth)
         wave = EncounteredWave(w, amplitude, number, ahead, across, here, bed)
-        f = wave_loads(wave, hull, q)
+        f = wave_loads(wave, hull, q, p, first)
         X += f.X
         Y += f.Y
         Z += f.Z
@@ -109,8 +121,15 @@ class StripWaveLoads(SeaParameters, Force):
     Breadth, section area, added mass and damping are polynomials of second degree along the hull,
     with given area, centre and gyradius of the waterplane, volume and centre of buoyancy, and the
     added mass and damping of the vessel. A boat whose hydrostatics belong to the same waterplane
-    therefore follows the surface of long waves. The sea is that of `irregular_sea`: `spectrum`,
-    `significant_height`, `modal_period`, `toward` and the other parameters have the same meaning.
+    therefore follows the surface of long waves.
+
+    With a `mesh`, breadth and section area of each strip are cut from it at the `draught`, by
+    default that at which it displaces the mass of the vessel. Length, beam, coefficients, centres
+    and spacing of two hulls are then those of the mesh. The file has x forward, y to port and z up,
+    and its surface is closed.
+
+    The sea is that of `irregular_sea`: `spectrum`, `significant_height`, `modal_period`, `toward`
+    and the other parameters have the same meaning.
     """
 
     formula: ClassVar[str] = (
@@ -146,8 +165,15 @@ class StripWaveLoads(SeaParameters, Force):
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, chapter 3; "
         "N. Salvesen, E. O. Tuck, O. M. Faltinsen, Ship Motions and Sea Loads, SNAME 78, 1970"
     )
+    sees_table: ClassVar[bool] = True
+    paths: ClassVar = ("mesh",)
     law: ClassVar = law
 
+    mesh: str = field(default="")  # STL or OBJ file of the closed hull, in place of particulars
+    scale: float = param(1.0, low=1e-6, high=1e6, unit="m", words="length of a unit of the mesh")
+    origin: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="place of the origin of motion in the mesh"
+    )
     strips: float = param(20.0, low=3.0, high=400.0, unit="", words="number of strips")
     hull_spacing: float = param(
         0.0,
@@ -176,7 +202,7 @@ class StripWaveLoads(SeaParameters, Force):
         low=0.0,
         high=50.0,
         unit="m",
-        words="default: that of the vessel",
+        words="default: that of the vessel; with a mesh that at which it displaces the mass",
         follows="vessel.draught",
     )
     block_coefficient: float = param(
@@ -250,8 +276,12 @@ class StripWaveLoads(SeaParameters, Force):
             vessel: Vessel on which the effect acts.
 
         Raises:
-            BadInput: A strip of the hull would have a negative breadth or section area.
+            BadInput: A strip of the hull would have a negative breadth or section area, or the mesh
+                cannot be read or does not float.
         """
+        if self.mesh:
+            known = self._with_particulars_of_mesh(vessel)
+            return super(StripWaveLoads, known).with_all_parameters(vessel)
         own = super().with_all_parameters(vessel)
         q = own.values()
         hull = interpreted(strip_hull)(q)
@@ -265,6 +295,47 @@ class StripWaveLoads(SeaParameters, Force):
                         "state waterplane_gyradius, flotation and buoyancy that fit the length"
                     )
         return own
+
+    def table(self) -> tuple[float, ...]:
+        """Return breadth and area of the sections of the mesh, as the law reads them."""
+        if not self.mesh:
+            return NO_SECTIONS
+        sections = self.sections()
+        return section_table(sections.breadth.tolist(), sections.area.tolist())
+
+    def sections(self) -> HullSections:
+        """Return the sections of the mesh.
+
+        Raises:
+            BadInput: The mesh cannot be read, is not closed, or does not float.
+        """
+        changed = time_of_change(self.mesh)
+        return sections_of_file(
+            self.mesh, changed, self.scale, self.origin, self.draught, int(self.strips)
+        )
+
+    def _with_particulars_of_mesh(self, vessel: Boat) -> Self:
+        """Return a copy with the particulars of the mesh. Raises BadInput if they were given."""
+        own = self
+        filled = set(self.filled)
+        if not own.has_value("draught"):
+            try:
+                mesh = mesh_of_file(self.mesh, self.scale)
+                draught = depth_of_volume(mesh, vessel.body.mass / self.density)
+            except BadInput as error:
+                raise BadInput(f"{vessel.name}: {self.name}: {error}") from None
+            own = own.with_values({"draught": draught})
+            filled.add("draught")
+        found = own.sections().particulars()
+        for key, value in found.items():
+            given = getattr(self, key)
+            stated = self.has_value(key) and not (key in ZERO_BY_DEFAULT and given == 0.0)
+            if stated and key not in self.filled:
+                raise BadInput(
+                    f"{vessel.name}: {self.name}: {key} = {given:g} and mesh; the mesh gives "
+                    f"{value:.4g}; leave out {key} or mesh"
+                )
+        return replace(own.with_values(found), filled=frozenset(filled | set(found)))
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the particulars of the hull that follow from the vessel.

@@ -1,6 +1,7 @@
 """Closed triangle meshes of hulls, from STL and OBJ files."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -101,6 +102,34 @@ def read_closed_mesh(path: Path, scale: float = 1.0) -> ClosedMesh:
     # a turn by half a revolution about x, which keeps the orientation of the triangles
     mesh = closed_mesh(corners * np.array([scale, -scale, -scale]), str(path))
     return mesh.moved(0.0, 0.0, -float(mesh.points[:, 2].max()))
+
+
+def time_of_change(path: str) -> int:
+    """Return the time of a file's last change [ns]; 0 if there is no such file.
+
+    Args:
+        path: The file.
+    """
+    return Path(path).stat().st_mtime_ns if Path(path).is_file() else 0
+
+
+def mesh_of_file(path: str, scale: float) -> ClosedMesh:
+    """Return the mesh of a file, which is read once until it changes.
+
+    Args:
+        path: STL or OBJ file.
+        scale: Length of a unit of the file [m].
+
+    Raises:
+        BadInput: It cannot be read, or is not closed.
+    """
+    return _mesh_of_file(path, time_of_change(path), scale)
+
+
+@lru_cache(maxsize=8)
+def _mesh_of_file(path: str, _changed: int, scale: float) -> ClosedMesh:
+    """Return the mesh of a file; it is read again after the file has changed."""
+    return read_closed_mesh(Path(path), scale)
 
 
 def closed_mesh(corners: Array, label: str) -> ClosedMesh:

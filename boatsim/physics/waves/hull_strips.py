@@ -3,12 +3,18 @@
 Each quantity is a polynomial of second degree along the hull, which has three given moments: its
 total, its first and its second moment. These are the particulars that a hull's motion in long waves
 depends on: area, centre and inertia of the waterplane, volume and centre of buoyancy, and the
-entries of the matrices of added mass and damping.
+entries of the matrices of added mass and damping. Where the sections of the hull are known, its
+breadth and section area are those of a table instead.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from numba import njit
+
+from boatsim.physics.signals import Array
+
+NO_SECTIONS = (0.0,)  # the table without sections
 
 
 class Line(NamedTuple):
@@ -106,3 +112,38 @@ def strip_place(i: int, q: Any) -> float:
         q: Parameters of the effect.
     """
     return (2.0 * i + 1.0) / int(q.strips) - 1.0
+
+
+def section_table(breadth: Sequence[float], area: Sequence[float]) -> tuple[float, ...]:
+    """Return the table of known sections, as a law reads it.
+
+    Args:
+        breadth: Breadth of each strip from the stern, of all hulls [m].
+        area: Section area of each [m^2].
+
+    Returns:
+        The number of strips, then breadth and area of each.
+    """
+    pairs: list[float] = []
+    for one, other in zip(breadth, area, strict=True):
+        pairs += [float(one), float(other)]
+    return (float(len(breadth)), *pairs)
+
+
+@njit(inline="always")
+def strip_section(
+    i: int, place: float, hull: StripHull, p: Array, first: Any
+) -> tuple[float, float]:
+    """Return breadth [m] and section area [m^2] of a strip, of all hulls.
+
+    Args:
+        i: Number of the strip, from 0 at the stern.
+        place: Its middle, from -1 at the stern to 1 at the bow.
+        hull: Distributions along the hull.
+        p: Parameters and tables of all effects.
+        first: Index of the table of sections.
+    """
+    breadth, area = line_value(place, hull.breadth), line_value(place, hull.area)
+    if p[first] > 0.0:
+        breadth, area = p[first + 1 + 2 * i], p[first + 2 + 2 * i]
+    return breadth, area

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from numba import njit
 
 from boatsim.physics.particulars import GRAVITY
-from boatsim.physics.signals import Wrench, wrench
+from boatsim.physics.signals import Array, Wrench, wrench
 from boatsim.physics.waves.hull_integrals import beam_integrals
-from boatsim.physics.waves.hull_strips import StripHull, line_value, strip_place
+from boatsim.physics.waves.hull_strips import StripHull, line_value, strip_place, strip_section
 
 
 class EncounteredWave(NamedTuple):
@@ -69,6 +69,8 @@ def draught_attenuation(draught: float, wave: EncounteredWave) -> tuple[float, f
 @njit(inline="always")
 def wave_on_strip(
     place: float,
+    breadth: float,
+    area: float,
     c: float,
     s: float,
     sides: tuple[float, float],
@@ -80,6 +82,8 @@ def wave_on_strip(
 
     Args:
         place: Middle of the strip, from -1 at the stern to 1 at the bow.
+        breadth: Breadth of the waterplane, of all hulls [m].
+        area: Area of the section, of all hulls [m^2].
         c: Cosine of the phase of the wave at the strip.
         s: Sine of it.
         sides: Sums over the hulls of cos(k y) [-] and of y sin(k y) [m] at their centre planes.
@@ -87,8 +91,7 @@ def wave_on_strip(
         hull: Distributions along the hull.
         q: Parameters of the effect.
     """
-    breadth = line_value(place, hull.breadth)
-    draught, beam = line_value(place, hull.area) / breadth, breadth / hull.hulls
+    draught, beam = area / breadth, breadth / hull.hulls
     pressure, vertical, side, lever = draught_attenuation(draught, wave)
     across = wave.number * wave.across
     mean, moment = beam_integrals(0.5 * across * beam)
@@ -166,15 +169,18 @@ def diffraction(strip: WaveOnStrip, wave: EncounteredWave, hull: StripHull, q: A
 
 
 @njit
-def wave_loads(wave: EncounteredWave, hull: StripHull, q: Any) -> Wrench:
+def wave_loads(wave: EncounteredWave, hull: StripHull, q: Any, p: Array, first: Any) -> Wrench:
     """Return the force of one wave on all strips of the hull.
 
-    The phase of the wave is turned from strip to strip, which takes no sine and cosine.
+    The phase of the wave is turned from strip to strip, which takes no sine and cosine. Strips
+    without a waterplane exert no force.
 
     Args:
         wave: The wave.
         hull: Distributions along the hull.
         q: Parameters of the effect.
+        p: Parameters and tables of all effects.
+        first: Index of the effect's table, by `section_table`.
     """
     X = Y = Z = K = M = N = 0.0
     along, arm = wave.number * wave.ahead, 0.5 * q.hull_spacing
@@ -184,15 +190,18 @@ def wave_loads(wave: EncounteredWave, hull: StripHull, q: Any) -> Wrench:
     c, s = cos(at_stern), sin(at_stern)
     turn, rise = cos(along * hull.width), sin(along * hull.width)
     for i in range(int(q.strips)):
-        strip = wave_on_strip(strip_place(i, q), c, s, sides, wave, hull, q)
-        f = froude_krylov(strip, wave, q)
-        d = diffraction(strip, wave, hull, q)
-        X += f.X + d.X
-        Y += f.Y + d.Y
-        Z += f.Z + d.Z
-        K += f.K + d.K
-        M += f.M + d.M
-        N += f.N + d.N
+        place = strip_place(i, q)
+        breadth, area = strip_section(i, place, hull, p, first)
+        if breadth > 0.0 and area > 0.0:
+            strip = wave_on_strip(place, breadth, area, c, s, sides, wave, hull, q)
+            f = froude_krylov(strip, wave, q)
+            d = diffraction(strip, wave, hull, q)
+            X += f.X + d.X
+            Y += f.Y + d.Y
+            Z += f.Z + d.Z
+            K += f.K + d.K
+            M += f.M + d.M
+            N += f.N + d.N
         c, s = c * turn + s * rise, s * turn - c * rise
     width = hull.width
     return wrench(X=X * width, Y=Y * width, Z=Z * width, K=K * width, M=M * width, N=N * width)

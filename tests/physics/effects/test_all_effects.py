@@ -158,7 +158,8 @@ def drawn(kind: type[Effect], seed: int) -> Any:
         values["coefficients"] = str(COEFFICIENTS)
         values.pop("modal_period", None)  # waves shorter than those of the table exert no force
     if "mesh" in kind.paths:
-        values |= {"mesh": str(MESH), "scale": 1.0, "draught": 0.13, "cell": 0.2}
+        values |= {"mesh": str(MESH), "scale": 1.0, "draught": 0.13}
+        values |= {"cell": 0.2} if "cell" in values else {"strips": 5.0}
     if kind.type_name() == "radiation_memory":  # a mass matrix is positive definite
         least = min(values[axis] for axis in AXES)
         for name in set(MassMatrix._fields) - set(AXES):

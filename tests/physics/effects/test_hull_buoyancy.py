@@ -12,7 +12,6 @@ import pytest
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, make_motion
 from boatsim.physics.effects.hull_buoyancy import HullBuoyancy
-from boatsim.physics.hull.mesh import ClosedMesh
 from boatsim.physics.hull.panels import divided
 from boatsim.physics.hull.submerged import submerged_part
 from boatsim.physics.particulars import GRAVITY
@@ -27,17 +26,9 @@ WITHOUT = {"hydrostatics": {"heave": 0.0, "roll": 0.0, "pitch": 0.0}}
 LENGTH, BEAM, DRAUGHT, DENSITY = 4.0, 1.0, 0.5, 1000.0  # [m, kg/m^3] of a box
 
 
-def written(mesh: ClosedMesh, path: Path) -> Path:
-    """A mesh as an OBJ file."""
-    lines = [f"v {x:.12g} {-y:.12g} {-z:.12g}" for x, y, z in mesh.points]
-    lines += ["f {} {} {}".format(*face) for face in mesh.faces + 1]
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
 def floating_box(folder: Path, **sea: Any) -> HullBuoyancy:
     """A weightless box of which half is submerged at rest."""
-    path = written(hull_meshes.box(LENGTH, BEAM, 2.0 * DRAUGHT), folder / "box.obj")
+    path = hull_meshes.written(hull_meshes.box(LENGTH, BEAM, 2.0 * DRAUGHT), folder / "box.obj")
     given: dict[str, Any] = {"draught": DRAUGHT, "mass": 0.0, "ahead": 0.0, "below": 0.0}
     given |= {"density": DENSITY, "cell": 0.1, "spectrum": "regular"}
     return HullBuoyancy(mesh=str(path), **(given | sea))
@@ -238,7 +229,7 @@ def test_waves_of_the_force_are_those_of_the_elevation(tmp_path: Path) -> None:
     """A column of water as slender as a pole carries the elevation at its place."""
     mesh = hull_meshes.box(0.01, 0.01, 4.0).moved(0.7, -0.4, 0.0)
     own = HullBuoyancy(
-        mesh=str(written(mesh, tmp_path / "pole.obj")),
+        mesh=str(hull_meshes.written(mesh, tmp_path / "pole.obj")),
         draught=2.0,
         mass=0.0,
         ahead=0.0,

@@ -2,17 +2,20 @@
 
 from dataclasses import replace
 from math import cos, pi, sin, sqrt
+from pathlib import Path
 from typing import Any
 
+import hull_meshes
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
 import boatsim
-from benchmarks.strip_loads import errors
+from benchmarks.strip_loads import HEADINGS, errors
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Wrench, make_motion
+from boatsim.physics.effects.hull_buoyancy import HullBuoyancy
 from boatsim.physics.effects.strip_wave_loads import StripWaveLoads
 from boatsim.physics.program import Program
 from boatsim.simulate.batch import Batch
@@ -33,6 +36,8 @@ BOX: dict[str, Any] = {
 PLACES = ("flotation", "buoyancy", "sway_mass_at", "sway_mass_below", "sway_damping_at")
 CATAMARAN = {"hull_spacing": 0.8, "hull_beam": 0.25}
 OTTER = {"use": "strip_wave_loads", **CATAMARAN, "hull_spacing": 0.79}
+OTTER_MESH = Path(__file__).parents[3] / "models" / "otter" / "hull.obj"
+BY_MESH = {"use": "strip_wave_loads", "mesh": str(OTTER_MESH), "origin": -0.2}
 
 
 def loads(wavelength: float = 3.0, toward: float = 0.0, **settings: Any) -> StripWaveLoads:
@@ -268,6 +273,78 @@ def test_heave_and_pitch_of_waves_from_ahead_hold_down_to_half_the_length(hull: 
     assert max(map(abs, found["pitch"].values())) < 0.12
 
 
+# ---- sections of a mesh
+
+
+@pytest.mark.parametrize("hull", ["box", "wigley", "catamaran"])
+def test_sections_of_a_mesh_exert_the_forces_of_a_boundary_element_method(
+    hull: str, tmp_path: Path
+) -> None:
+    """As near as the particulars, from which they differ by 2 % of the largest force at most."""
+    for heading in HEADINGS:
+        by_particulars = errors(hull, heading)
+        for axis, by_wavelength in errors(hull, heading, folder=tmp_path).items():
+            limit = 0.18 if axis in ("surge", "sway") else 0.04
+            for wavelength, error in by_wavelength.items():
+                assert error == pytest.approx(by_particulars[axis][wavelength], abs=0.02)
+                if wavelength >= 6.0:
+                    assert abs(error) < limit, (axis, heading, wavelength)
+
+
+@pytest.mark.parametrize("toward", [pi, 2.4, pi / 2])
+@pytest.mark.parametrize("wavelength", [2.0, 4.0])
+def test_the_undisturbed_pressure_on_a_hull_with_transom_and_wedge_is_that_on_its_panels(
+    toward: float, wavelength: float, tmp_path: Path
+) -> None:
+    """A vertical prism whose sections no polynomial along the hull describes."""
+    plan = np.array([[-1.0, -0.2], [-1.0, 0.2], [0.3, 0.2], [1.0, 0.0], [0.3, -0.2]])
+    points = [np.column_stack([plan, np.full(5, z)]) for z in (-0.3, 0.0)]
+    path = hull_meshes.written(hull_meshes.convex(np.concatenate(points)), tmp_path / "hull.obj")
+    height = 1e-4
+    wave = {"spectrum": "regular", "significant_height": 2.0 * height, "toward": toward}
+    wave |= {"modal_period": 2 * pi / sqrt(2 * pi * G / wavelength)}
+    panels = HullBuoyancy(
+        mesh=str(path), draught=DRAUGHT, mass=0.0, ahead=0.0, below=0.0, cell=0.03, **wave
+    )
+    calm = np.array(replace(panels, significant_height=0.0).wrench(make_motion()))
+    wanted = (complex_loads(panels) - calm * (1 - 1j)) / height
+    own = loads(wavelength, toward, strips=100.0, mesh=str(path))
+    found = complex_loads(replace(own, **own.sections().particulars()))
+    for axes in ([0, 1, 2], [3, 4, 5]):  # forces [N], moments [N m]
+        largest = np.abs(wanted[axes]).max()
+        assert found[axes] == pytest.approx(wanted[axes], abs=0.01 * largest)
+
+
+def test_particulars_follow_from_the_mesh() -> None:
+    boat = vessel.load_vessel("otter").with_effect(BY_MESH)
+    own = boat.effect("strip_wave_loads")
+    assert isinstance(own, StripWaveLoads)
+    # pontoons of 2 x 0.25 m, 0.79 m apart, with few panels
+    assert (own.length, own.hull_spacing, own.centre) == pytest.approx((2.0, 0.79, 0.2), rel=1e-4)
+    assert own.hull_beam == pytest.approx(0.25, rel=0.01)
+    assert own.waterplane_coefficient == pytest.approx(0.75, rel=0.03)
+    assert own.buoyancy == pytest.approx(0.2, abs=1e-3)
+    submerged = own.block_coefficient * 2.0 * own.length * own.hull_beam * own.draught
+    assert own.density * submerged == pytest.approx(boat.body.mass, rel=1e-9)
+    assert boat.with_effect({"use": "fan_wind"}).effect("strip_wave_loads") == own
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"mesh": "none.stl"}, r"none.stl: there is no such file"),
+        ({"length": 2.0}, r"length = 2 and mesh; the mesh gives 2; leave out length or mesh"),
+        ({"hull_spacing": 0.8}, r"hull_spacing = 0.8 and mesh; the mesh gives 0.79"),
+        ({"flotation": 0.0}, r"flotation = 0 and mesh"),
+        ({"density": 300.0}, r"otter: strip_wave_loads: the hull encloses .* m\^3"),
+        ({"draught": 0.0}, r"the hull does not float"),
+    ],
+)
+def test_a_mesh_that_does_not_fit_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        vessel.load_vessel("otter").with_effect(BY_MESH | given)
+
+
 # ---- vessels
 
 
@@ -290,9 +367,10 @@ def test_a_waterplane_that_no_hull_has_is_refused() -> None:
         boat.with_effect({**OTTER, "waterplane_gyradius": 0.2})
 
 
-def test_the_compiled_program_gives_the_forces_of_the_law() -> None:
+@pytest.mark.parametrize("hull", [OTTER, BY_MESH], ids=["particulars", "mesh"])
+def test_the_compiled_program_gives_the_forces_of_the_law(hull: dict[str, Any]) -> None:
     sea = {"significant_height": 0.3, "modal_period": 2.5, "toward": 2.0, "spreading": 3.0}
-    boat = vessel.load_vessel("otter").with_effect({**OTTER, **sea, "components": 12.0})
+    boat = vessel.load_vessel("otter").with_effect({**hull, **sea, "components": 12.0})
     own = boat.effect("strip_wave_loads")
     assert isinstance(own, StripWaveLoads)
     program, found = Program(boat), []
