@@ -96,7 +96,8 @@ def test_coupled_damping_of_a_published_state_space_is_found_again() -> None:
     lever=st.floats(-0.3, 0.3),
     damping=st.tuples(*[st.floats(5.0, 200.0)] * 3),
     couplings=st.tuples(*[st.floats(-20.0, 20.0)] * 2),
-    speed=st.floats(-0.2, 1.0),
+    # at lower speeds the influence of the angle is below what `linearise` sets to zero (ROUNDING)
+    speed=st.just(0.0) | st.floats(-0.2, -1e-4) | st.floats(1e-4, 1.0),
 )
 def test_sway_and_yaw_under_way_are_those_of_the_handbook(
     added: tuple[float, float, float],
