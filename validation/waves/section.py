@@ -3,7 +3,9 @@
 The section spans a flume between glass walls (`section_beam_waves`, NTNU). Its coefficients per
 length are differences of those of two long bodies, in which the ends cancel. The measured incident
 wave is turned into the excitation by the table, over all frequencies; the section moves by its
-memory, buoyancy, weight and mass. No number is fitted, and there is no viscous damping.
+memory, buoyancy, weight and mass. No number is fitted, and there is no viscous damping. The
+recorded motion is that of the log as a diagnosis corrects it, with the poses on the clock of the
+waves.
 """
 
 import csv
@@ -14,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from boatsim.diagnosis import loading
 from boatsim.hydrodynamics.axes import with_memory
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.hydrodynamics.response import linear_stiffness
@@ -21,7 +24,9 @@ from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording
 from boatsim.simulate.open_water import OpenWater
+from validation.real import section_beam_waves
 from validation.waves.boats import write_vessel
 from validation.waves.hulls import Section, write_section
 
@@ -35,7 +40,6 @@ BEGIN = 20.0  # [s] the section is at rest until then
 RATE = 200.0  # [Hz] of the simulation
 LONGEST = 1.0  # [s] shorter waves are counted apart
 HELD = {"3": "", "4": "roll", "5": "heave", "6": "sway"}  # by the rig, by the kind of the run
-LEFT_OUT = ("4061_2",)  # its camera recorded nothing
 PERIODS = (1.516, 1.269, 1.238, 1.210, 1.183, 1.158, 1.113)
 PERIODS += (1.072, 1.036, 0.897, 0.802, 0.733, 0.678, 0.634)  # [s] by the number of the run
 SIGNALS = {"heave": "z_m", "roll": "phi_rad"}
@@ -164,24 +168,31 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
     write_coefficients(folder / "coefficients", coefficients)
     found = read_coefficients(folder / "coefficients")
     results = []
-    for path in sorted(RUNS.glob("*.csv")):
-        if path.stem in LEFT_OUT:
-            continue
-        held = HELD[path.stem[0]]
-        period = PERIODS[int(path.stem[1:3]) - 1]
-        table = _read_run(path)
+    for recording in corrected_runs():
+        held = HELD[recording.name[0]]
+        period = PERIODS[int(recording.name[1:3]) - 1]
+        table = _read_run(RUNS / f"{recording.name}.csv")
         predicted = _predicted(_vessel(folder, found, held), found, table)
+        rest = table["t_s"] < BEGIN
         errors = {}
-        used = table["t_s"] >= BEGIN
         for axis, column in SIGNALS.items():
             if axis != held:
-                error = predicted[axis] - table[column]
-                motion = table[column] - table[column][~used].mean()
-                errors[axis] = float(
-                    np.sqrt(np.mean(error[used] ** 2) / np.mean(motion[used] ** 2))
-                )
-        results.append((path.stem, period, errors))
+                recorded = recording.signals[column]
+                error = np.interp(recording.t, table["t_s"], predicted[axis]) - recorded
+                motion = recorded - np.nanmean(table[column][rest])
+                errors[axis] = float(np.sqrt(np.nanmean(error**2) / np.nanmean(motion**2)))
+        results.append((recording.name, period, errors))
     return results
+
+
+def corrected_runs() -> list[Recording]:
+    """Return the recordings from the begin of the waves, as a diagnosis corrects them.
+
+    The accelerometers show that the poses of most runs are on a clock of their own.
+    """
+    files = section_beam_waves.copied_runs(RUNS.name)
+    loaded = loading.load_recordings(loading.Request(files[:1], hold_out=files[1:]))
+    return sorted([*loaded.fitted, *loaded.held_out], key=lambda one: one.name)
 
 
 def _read_run(path: Path) -> dict[str, Array]:
