@@ -5,6 +5,7 @@ from math import cos, degrees, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from boatsim.physics.base import Array
 from boatsim.physics.hull.floating import (
@@ -141,7 +142,7 @@ def _arms(hull: LoadedHull, heels: Sequence[float], exact: Callable[[float], flo
 def upright_density(parameter: float, height: float, meridians: int, circles: int) -> float:
     """Return the relative density above which a homogeneous paraboloid floats upright.
 
-    Found by bisection of its metacentric height. Archimedes' value is (1 - 3 p / 2 H)^2 for a
+    It is that of a metacentric height of zero. Archimedes' value is (1 - 3 p / 2 H)^2 for a
     height H of more than 3 p / 2 (On Floating Bodies, book 2, proposition 4, where 2 p is the
     parameter of the parabola).
 
@@ -156,15 +157,12 @@ def upright_density(parameter: float, height: float, meridians: int, circles: in
     triangles = body_of_revolution(np.concatenate([[[0.0, height]], profile]), meridians)
     mesh = closed_mesh(triangles, "paraboloid")
     centre = np.array([0.0, 0.0, -2.0 / 3.0 * height])
-    low, high = 0.01, 0.99
-    while high - low > 1e-6:
-        density = 0.5 * (low + high)
+
+    def metacentric_height(density: float) -> float:
         hull = LoadedHull(mesh, density * mesh.volume, centre)
-        if metacentric_heights(hull, righting_arm(hull, 0.0).submerged)[0] < 0.0:
-            low = density
-        else:
-            high = density
-    return 0.5 * (low + high)
+        return metacentric_heights(hull, righting_arm(hull, 0.0).submerged)[0]
+
+    return float(brentq(metacentric_height, 0.01, 0.99, xtol=1e-6))
 
 
 def box_vessel() -> LoadedHull:
