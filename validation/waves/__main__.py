@@ -221,6 +221,9 @@ def print_section(folder: Path) -> None:
             values = [e[axis] for _, period, e in results if axis in e and chosen(period)]
             cells.append(f"{axis} {np.median(values):.2f} ({len(values)} runs)")
         print(f"median, {words}: {', '.join(cells)}")
+    at_centre, at_waterline = section.roll_periods(folder)
+    print(f"natural period of roll, held in sway at the mass centre: {at_centre:.2f} s, at the")
+    print(f"waterline: {at_waterline:.2f} s; by the makers' decay tests with sway clamped 1.28 s")
 
 
 def main() -> None:

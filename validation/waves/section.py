@@ -40,7 +40,7 @@ BEGIN = 20.0  # [s] the section is at rest until then
 RATE = 200.0  # [Hz] of the simulation
 LONGEST = 1.0  # [s] shorter waves are counted apart
 HELD = {"3": "", "4": "roll", "5": "heave", "6": "sway"}  # by the rig, by the kind of the run
-PERIODS = (1.516, 1.269, 1.238, 1.210, 1.183, 1.158, 1.113)
+PERIODS: tuple[float, ...] = (1.516, 1.269, 1.238, 1.210, 1.183, 1.158, 1.113)
 PERIODS += (1.072, 1.036, 0.897, 0.802, 0.733, 0.678, 0.634)  # [s] by the number of the run
 SIGNALS = {"heave": "z_m", "roll": "phi_rad"}
 TEXT = """
@@ -164,15 +164,19 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
     Args:
         folder: Working folder.
     """
-    coefficients = with_memory(section_coefficients(folder, FLUME))
-    write_coefficients(folder / "coefficients", coefficients)
-    found = read_coefficients(folder / "coefficients")
+    about_waterline = section_coefficients(folder, FLUME)
+    stiffness = linear_stiffness(about_waterline, MASS, DEPTH)
+    # about the origin of each kind of run
+    coefficients = {"sway": _written(folder / "about_mass_centre", at_mass_centre(about_waterline))}
+    for held in ("", "roll", "heave"):
+        coefficients[held] = _written(folder / "about_waterline", about_waterline)
     results = []
     for recording in corrected_runs():
         held = HELD[recording.name[0]]
         period = PERIODS[int(recording.name[1:3]) - 1]
         table = _read_run(RUNS / f"{recording.name}.csv")
-        predicted = _predicted(_vessel(folder, found, held), found, table)
+        found = coefficients[held]
+        predicted = _predicted(_vessel(folder, found.folder, stiffness, held), found.values, table)
         rest = table["t_s"] < BEGIN
         errors = {}
         for axis, column in SIGNALS.items():
@@ -183,6 +187,56 @@ def run_errors(folder: Path) -> list[tuple[str, float, dict[str, float]]]:
                 errors[axis] = float(np.sqrt(np.nanmean(error**2) / np.nanmean(motion**2)))
         results.append((recording.name, period, errors))
     return results
+
+
+class Written(NamedTuple):
+    """Coefficients that were written to a folder."""
+
+    folder: Path
+    values: Coefficients
+
+
+def _written(folder: Path, coefficients: Coefficients) -> Written:
+    """Write coefficients, with their memory, to a folder, and read them again."""
+    write_coefficients(folder, with_memory(coefficients))
+    return Written(folder, read_coefficients(folder))
+
+
+def at_mass_centre(found: Coefficients) -> Coefficients:
+    """Return coefficients of sway and roll about the mass centre instead of the waterline.
+
+    The rig holds the section there, as the natural period of roll shows (`roll_periods`).
+
+    Args:
+        found: Coefficients about the waterline.
+    """
+    moved = np.eye(len(AXES))
+    moved[AXES.index("sway"), AXES.index("roll")] = DEPTH
+    values = {}
+    for name in ("added_mass", "damping", "infinite_added_mass"):
+        values[name] = moved.T @ getattr(found, name) @ moved
+    return replace(found, excitation=found.excitation @ moved, **values)
+
+
+def roll_periods(folder: Path) -> tuple[float, float]:
+    """Return the natural period of roll, undamped, held in sway at mass centre and waterline [s].
+
+    Args:
+        folder: Working folder.
+    """
+    found = section_coefficients(folder, FLUME)
+    stiffness = linear_stiffness(found, MASS, DEPTH)[AXES.index("roll"), AXES.index("roll")]
+    at_centre = _roll_period(at_mass_centre(found), stiffness, INERTIA)
+    return at_centre, _roll_period(found, stiffness, INERTIA + MASS * DEPTH**2)
+
+
+def _roll_period(found: Coefficients, stiffness: float, inertia: float) -> float:
+    """Period at which inertia and stiffness of roll balance [s]."""
+    roll = AXES.index("roll")
+    balance = (inertia + found.added_mass[:, roll, roll]) * found.frequency**2 - stiffness
+    above = int(np.argmax(balance > 0.0))
+    pair = slice(above - 1, above + 1)
+    return float(2.0 * np.pi / np.interp(0.0, balance[pair], found.frequency[pair]))
 
 
 def corrected_runs() -> list[Recording]:
@@ -201,14 +255,16 @@ def _read_run(path: Path) -> dict[str, Array]:
     return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
 
 
-def _vessel(folder: Path, found: Coefficients, held: str) -> Vessel:
+def _vessel(folder: Path, coefficients: Path, stiffness: Array, held: str) -> Vessel:
     """Return the section; the rig holds the given degree of freedom, if any."""
-    stiffness = linear_stiffness(found, MASS, DEPTH)
+    depth = DEPTH
+    if held == "sway":
+        depth = 0.0  # the origin is the mass centre
     text = TEXT.format(
         mass=MASS,
-        depth=DEPTH,
+        depth=depth,
         inertia=INERTIA,
-        folder=(folder / "coefficients").resolve(),
+        folder=coefficients.resolve(),
         heave=stiffness[2, 2],
         roll=stiffness[3, 3],
     )
