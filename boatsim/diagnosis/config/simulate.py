@@ -48,8 +48,8 @@ class SimulateConfig:
     effect_gain: float = setting(
         2.0,
         "nats",
-        "Evidence of the free runs for an added effect. Odds of 7 suffice, because it is only used "
-        "for predictions, and held-out recordings decide, too.",
+        "Gain by the free runs over fitted and held-out recordings for an added effect. Odds of 7 "
+        "suffice, because it is only used for predictions.",
     )
     followed: int = setting(
         10, "count", "Candidates of the largest predicted gain that get a rough fit.", low=1

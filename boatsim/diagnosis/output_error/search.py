@@ -22,7 +22,12 @@ from boatsim.diagnosis.output_error.fit import (
     fit_to_free_runs,
     without_fit,
 )
-from boatsim.diagnosis.output_error.weights import run_errors, typical_error_ratio
+from boatsim.diagnosis.output_error.weights import (
+    RunErrors,
+    log_likelihood_gain,
+    run_errors,
+    typical_error_ratio,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
@@ -108,8 +113,9 @@ class OutputErrorSearch:
     def add_effects(self, candidates: Sequence[str]) -> None:
         """Add effects one by one, each the one that the free runs make most probable.
 
-        Rough fits order the candidates; the first one of which a full fit gains enough evidence and
-        makes simulations of held-out recordings better is added.
+        Rough fits order the candidates; the first one that is good enough after a full fit is
+        added. Simulations of fitted and of held-out recordings must both be more probable with it,
+        and together by `simulate.effect_gain`.
 
         Args:
             candidates: Names of the candidates.
@@ -119,13 +125,25 @@ class OutputErrorSearch:
                 if self.budget.is_spent:
                     return
                 further = self._fitted(rough.model)
-                gain = further.evidence - self.best.evidence
-                if gain >= self.config.effect_gain and self._helps(further.model):
+                if self._is_better(further):
                     self._accept(further)
                     self.added += 1
                     break
             else:
                 return
+
+    def _is_better(self, further: OutputErrorFit) -> bool:
+        """Whether simulations are more probable with one more effect, and those of no group bad."""
+        fitted = further.evidence - self.best.evidence
+        if fitted <= 0.0:
+            return False
+        before, after = self._held_out_errors(further.model)
+        held_out = log_likelihood_gain(after, before, self.errors.scale)
+        if held_out <= 0.0 or fitted + held_out < self.config.effect_gain:
+            return False
+        return not generalization.harmed_groups(
+            self.problem, self.model, further.model, self.held_out, self.horizon
+        )
 
     def held_out_ratio(self, other: Fit) -> float:
         """Return the ratio of typical errors of free runs over held-out recordings.
@@ -133,12 +151,16 @@ class OutputErrorSearch:
         Args:
             other: Vessel that is compared with the best one so far.
         """
+        before, after = self._held_out_errors(other)
+        if before.count == 0:
+            return 1.0
+        return typical_error_ratio(after, before, self.errors.scale)
+
+    def _held_out_errors(self, other: Fit) -> tuple[RunErrors, RunErrors]:
+        """Errors of free runs over held-out recordings by the best vessel so far and by another."""
         both = {BEFORE: self.model, AFTER: other}
         runs = free_runs(self.problem, both, self.held_out, self.horizon)
-        if not runs:
-            return 1.0
-        after, before = run_errors(runs, AFTER), run_errors(runs, BEFORE)
-        return typical_error_ratio(after, before, self.errors.scale)
+        return run_errors(runs, BEFORE), run_errors(runs, AFTER)
 
     def start_from(self, other: Fit) -> None:
         """Fit from another start, which may lead to another maximum, and keep the better fit.
@@ -149,12 +171,6 @@ class OutputErrorSearch:
         found = self._fitted(other)
         if found.evidence > self.best.evidence:
             self._accept(found)
-
-    def _helps(self, other: Fit) -> bool:
-        """Whether simulations of held-out recordings get better, and those of no group worse."""
-        return self.held_out_ratio(other) < 1.0 and not generalization.harmed_groups(
-            self.problem, self.model, other, self.held_out, self.horizon
-        )
 
     def _fitted(self, start: Fit) -> OutputErrorFit:
         """Fit a vessel, in units of the errors of the best one so far."""

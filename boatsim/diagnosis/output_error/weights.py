@@ -34,14 +34,18 @@ class RunErrors:
     squares: Mapping[str, Array]
     signals: Mapping[str, Array]
 
+    @property
+    def count(self) -> int:
+        """Number of the runs."""
+        return len(next(iter(self.squares.values())))
+
     def squared_distances(self, scale: Mapping[str, float]) -> Array:
         """Return the sum (R,) of the squared errors of each run, in units of a scale.
 
         Args:
             scale: Scale of the errors by family.
         """
-        count = len(next(iter(self.squares.values())))
-        found = np.zeros(count)
+        found = np.zeros(self.count)
         for family, unit in scale.items():
             found += self.squares[family] / unit**2
         return found
@@ -108,6 +112,24 @@ def run_errors(runs: Sequence[FreeRun], model: str) -> RunErrors:
     return RunErrors(squares, signals)
 
 
+def log_likelihood_gain(
+    found: RunErrors, reference: RunErrors, scale: Mapping[str, float]
+) -> float:
+    """Return how much more probable free runs are by one model than by another [nats].
+
+    The errors have Student's t distribution, with each recorded signal of a run as one observation.
+    The gain is minus infinity if a simulation diverges that does not with the reference.
+
+    Args:
+        found: Errors of the model that is judged.
+        reference: Errors of the model that it is compared with.
+        scale: Scale of the errors by family.
+    """
+    signals = sum(found.signals[family] for family in scale)
+    change = _change_of_logarithms(found, reference, scale)
+    return float(-0.5 * np.sum((DEGREES_OF_FREEDOM + signals) * change))
+
+
 def typical_error_ratio(
     found: RunErrors, reference: RunErrors, scale: Mapping[str, float]
 ) -> float:
@@ -122,8 +144,14 @@ def typical_error_ratio(
         reference: Errors of the model that it is compared with.
         scale: Scale of the errors by family.
     """
+    return float(np.exp(0.5 * np.mean(_change_of_logarithms(found, reference, scale))))
+
+
+def _change_of_logarithms(
+    found: RunErrors, reference: RunErrors, scale: Mapping[str, float]
+) -> Array:
+    """Change (R,) of the logarithm in the density of Student's t distribution, 0 where equal."""
     with np.errstate(invalid="ignore"):
         after = np.log(DEGREES_OF_FREEDOM + found.squared_distances(scale))
         before = np.log(DEGREES_OF_FREEDOM + reference.squared_distances(scale))
-        change = np.where(after == before, 0.0, after - before)  # both may diverge
-    return float(np.exp(0.5 * np.mean(change)))
+        return np.where(after == before, 0.0, after - before)  # both may diverge

@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.output_error.weights import RunErrors, run_errors, typical_error_ratio
+from boatsim.diagnosis.output_error.weights import (
+    RunErrors,
+    log_likelihood_gain,
+    run_errors,
+    typical_error_ratio,
+)
 from boatsim.physics.base import Array
 
 FAMILY = "position_rms_m"
@@ -81,3 +86,23 @@ def test_values_that_were_not_recorded_do_not_count_and_missing_simulations_dive
     assert found.squares[FAMILY][1] == np.inf
     assert list(found.signals[FAMILY]) == [1.0, 1.0]
     assert list(found.signals["heading_rms_rad"]) == [0.0, 0.0]
+
+
+@given(st.integers(0, 10**6))
+def test_the_gain_is_the_difference_of_log_densities_of_student_s_t(seed: int) -> None:
+    """Density of the t distribution in two dimensions, without its constant factor."""
+    rng = np.random.default_rng(seed)
+    before, after = rng.uniform(0.1, 9.0, 8), rng.uniform(0.1, 9.0, 8)
+    unit = 1.7
+
+    def log_density(distances: Array) -> float:
+        return float(np.sum(-0.5 * (NU + 2.0) * np.log1p(distances**2 / (NU * unit**2))))
+
+    gain = log_likelihood_gain(errors_of(after), errors_of(before), {FAMILY: unit})
+    assert gain == pytest.approx(log_density(after) - log_density(before), rel=1e-9, abs=1e-9)
+    after[0] = np.inf
+    lost = log_likelihood_gain(errors_of(after), errors_of(before), {FAMILY: unit})
+    assert lost == -np.inf
+    before[0] = np.inf
+    kept = log_likelihood_gain(errors_of(after), errors_of(before), {FAMILY: unit})
+    assert np.isfinite(kept)
