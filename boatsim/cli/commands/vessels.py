@@ -243,13 +243,19 @@ def hydrodynamics(
         Path,
         typer.Argument(
             metavar="HULL",
-            help="Mesh (.stl, .obj, .ply; z up, x forward), NAME.1 of WAMIT, or Nemoh's folder.",
+            help="Mesh (.stl, .obj, .ply; z up, x forward), NAME.1 of WAMIT, Nemoh's folder, or "
+            "response amplitude operators: .2, .3, .4 of WAMIT, .re1, .re8, .mat, .csv.",
         ),
     ],
     draught: Annotated[
-        float,
-        typer.Option(min=1e-3, max=100.0, metavar="M", help="Draught above the lowest point [m]."),
-    ],
+        float | None,
+        typer.Option(
+            min=1e-3,
+            max=100.0,
+            metavar="M",
+            help="Draught above the lowest point [m]; not for response amplitude operators.",
+        ),
+    ] = None,
     density: Annotated[
         float, typer.Option(min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3].")
     ] = 1025.0,
@@ -321,12 +327,26 @@ def hydrodynamics(
             help="Folder to write [default: hydrodynamics next to HULL].",
         ),
     ] = None,
+    vessel: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FOLDER|FILE", help="Vessel that moves as a table of motions states."
+        ),
+    ] = None,
+    load: Load = None,
+    speed: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=100.0, metavar="U", help="Forward speed of a table of operators [m/s]."
+        ),
+    ] = 0.0,
 ) -> int:
     """Compute hydrodynamic coefficients of a hull by Capytaine, or convert those of WAMIT or Nemoh.
 
     The effects radiation_memory and panel_wave_loads of a vessel read the folder. The mean drift is
     that of the freely floating hull, which depends on its mass centre and its gyradii. Needs
-    boatsim[bem] for a mesh.
+    boatsim[bem] for a mesh. Of response amplitude operators the folder has the loads that cause the
+    motions of --vessel, or those of the table.
     """
     from boatsim.cli.hydrodynamics import HydrodynamicsOptions, write_hydrodynamics
 
@@ -347,6 +367,9 @@ def hydrodynamics(
         roll_damping=roll_damping,
         compare=compare,
         out=out,
+        vessel=vessel,
+        loads=split_loads(load),
+        speed=speed,
     )
     return write_hydrodynamics(hull, options)
 

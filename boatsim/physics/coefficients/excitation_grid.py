@@ -17,7 +17,7 @@ from numba import njit
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from boatsim.errors import BadInput
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.table import WaveLoads
 from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
@@ -32,13 +32,13 @@ CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and 
 
 
 @lru_cache(maxsize=8)
-def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
+def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
     """Return the table of excitation and mean drift of a hull, as compiled laws read it.
 
     The mean drift is zero if it is not known.
 
     Args:
-        found: Coefficients with headings from 0 to pi.
+        found: Loads with headings from 0 to pi.
         label: Folder of the coefficients, for messages.
 
     Raises:

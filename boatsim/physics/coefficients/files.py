@@ -6,6 +6,9 @@
     memory.csv          sections of the model of the memory of the radiation force
     drift.csv           a row for each frequency and heading: mean drift
 
+A folder of wave loads alone, such as those of a table of motions, has no radiation.csv and
+memory.csv, and only source, conventions and depth in coefficients.toml.
+
 The units and axes are those of `table.Coefficients`.
 """
 
@@ -19,7 +22,7 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.files import read_toml, replace_file, toml_value
 from boatsim.physics.coefficients.memory_fit import SETS, MemoryModel
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.table import Coefficients, WaveLoads
 from boatsim.physics.signals import AXES, Array
 
 HEADER = "coefficients.toml"
@@ -118,6 +121,37 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
 
 
+def write_wave_loads(folder: Path, found: WaveLoads) -> None:
+    """Write wave loads alone to a folder, which is made if necessary.
+
+    Args:
+        folder: The folder.
+        found: The loads.
+
+    Raises:
+        BadInput: The folder contains the coefficients of a hull.
+    """
+    if (folder / RADIATION).is_file():
+        raise BadInput(
+            f"{folder}: contains the coefficients of a hull ({RADIATION}); choose another folder "
+            "with --out"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [
+        f"source = {toml_value(found.source)}",
+        f"axes = {toml_value(AXES_TEXT)}",
+        f"phase = {toml_value(PHASE_TEXT)}",
+        f"depth = {toml_value(found.depth)}  # [m] of the water; 0: deep water",
+    ]
+    with replace_file(folder / HEADER) as path:
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
+    if found.drift is None:
+        (folder / DRIFT).unlink(missing_ok=True)  # of earlier loads
+    else:
+        _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
+
+
 def _rounded(values: Array) -> list[float]:
     return [float(f"{value:.{DIGITS}g}") for value in np.asarray(values).tolist()]
 
@@ -128,7 +162,7 @@ def _radiation_rows(found: Coefficients) -> Iterable[Sequence[object]]:
             yield [frequency, axis, *found.added_mass[k, i], *found.damping[k, i]]
 
 
-def _excitation_rows(found: Coefficients) -> Iterable[Sequence[object]]:
+def _excitation_rows(found: Coefficients | WaveLoads) -> Iterable[Sequence[object]]:
     for k, frequency in enumerate(found.frequency):
         for h, heading in enumerate(found.heading):
             parts: list[float] = []
@@ -143,7 +177,7 @@ def _memory_rows(memory: MemoryModel) -> Iterable[Sequence[object]]:
             yield [name, *(f"{value:.{MODEL_DIGITS}g}" for value in one)]
 
 
-def _drift_rows(found: Coefficients, drift: Array) -> Iterable[Sequence[object]]:
+def _drift_rows(found: Coefficients | WaveLoads, drift: Array) -> Iterable[Sequence[object]]:
     for k, frequency in enumerate(found.frequency):
         for h, heading in enumerate(found.heading):
             yield [frequency, heading, *drift[k, h]]
@@ -173,10 +207,47 @@ def read_coefficients(folder: str | Path) -> Coefficients:
         BadInput: A file is missing, or a value is not what the format requires.
     """
     path = Path(folder)
+    return _read_coefficients(path.resolve(), _times_of_change(path))
+
+
+def read_wave_loads(folder: str | Path) -> WaveLoads:
+    """Read the wave loads of a folder, with or without other coefficients of the hull.
+
+    A second call returns the same object.
+
+    Args:
+        folder: The folder.
+
+    Raises:
+        BadInput: A file is missing, or a value is not what the format requires.
+    """
+    path = Path(folder)
+    return _read_wave_loads(path.resolve(), _times_of_change(path))
+
+
+def _times_of_change(path: Path) -> tuple[int, ...]:
+    """Return the times of change of all files of a folder, by which an edited one is read again."""
     if not (path / HEADER).is_file():
         raise BadInput(f"{path}: there is no {HEADER}; boatsim hydrodynamics writes such a folder")
-    times = tuple((path / name).stat().st_mtime_ns for name in FILES if (path / name).is_file())
-    return _read_coefficients(path.resolve(), times)
+    return tuple((path / name).stat().st_mtime_ns for name in FILES if (path / name).is_file())
+
+
+@lru_cache(maxsize=8)
+def _read_wave_loads(folder: Path, _: tuple[int, ...]) -> WaveLoads:
+    """Read the wave loads of a folder whose files have the given times of change."""
+    header = read_toml(folder / HEADER)
+    frequency, heading, excitation = _read_excitation(folder / EXCITATION)
+    drift = None
+    if (folder / DRIFT).is_file():
+        drift = _read_drift(folder / DRIFT, frequency, heading)
+    return WaveLoads(
+        source=str(header.get("source", "")),
+        depth=_number(header, "depth", folder / HEADER),
+        frequency=frequency,
+        heading=heading,
+        excitation=excitation,
+        drift=drift,
+    )
 
 
 @lru_cache(maxsize=8)
@@ -185,7 +256,9 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
     header = read_toml(folder / HEADER)
     label = folder / HEADER
     frequency, added_mass, damping = _read_radiation(folder / RADIATION)
-    heading, excitation = _read_excitation(folder / EXCITATION, frequency)
+    waves, heading, excitation = _read_excitation(folder / EXCITATION)
+    if len(waves) != len(frequency) or not np.allclose(waves, frequency):
+        raise BadInput(f"{folder / EXCITATION}: the frequencies differ from those of {RADIATION}")
     memory = None
     if (folder / MEMORY).is_file():
         memory = _read_memory(folder / MEMORY, header.get("memory_error", [0.0, 0.0]), label)
@@ -279,19 +352,22 @@ def _increasing(values: Array, path: Path) -> Array:
     return values
 
 
-def _read_excitation(path: Path, frequency: Array) -> tuple[Array, Array]:
+def _read_excitation(path: Path) -> tuple[Array, Array, Array]:
+    """Return frequencies (N,), headings (H,) and excitation (N, H, 6)."""
     rows = _numbers(_read_table(path, EXCITATION_COLUMNS), 0, path)
-    count = len(frequency)
-    headings = len(rows) // count
-    if headings == 0 or len(rows) != headings * count:
-        raise BadInput(f"{path}: every frequency of {RADIATION} needs the same headings")
-    table = rows.reshape(count, headings, -1)
-    heading = table[0, :, 1]
+    if len(rows) == 0:
+        raise BadInput(f"{path}: there are no rows")
+    headings = int(np.argmax(np.append(rows[:, 0] != rows[0, 0], True)))
+    if len(rows) % headings:
+        raise BadInput(f"{path}: every frequency needs the same headings")
+    table = rows.reshape(-1, headings, rows.shape[1])
+    heading, frequency = table[0, :, 1], table[:, 0, 0]
     if not np.allclose(table[:, :, 0], frequency[:, None]):
-        raise BadInput(f"{path}: the frequencies differ from those of {RADIATION}")
+        raise BadInput(f"{path}: every frequency needs the same headings")
     if not np.allclose(table[:, :, 1], heading) or not np.all(np.diff(heading) > 0.0):
         raise BadInput(f"{path}: headings must increase and be the same at every frequency")
-    return heading, table[:, :, 2::2] + 1j * table[:, :, 3::2]
+    excitation = table[:, :, 2::2] + 1j * table[:, :, 3::2]
+    return _increasing(frequency, path), heading, excitation
 
 
 def _read_drift(path: Path, frequency: Array, heading: Array) -> Array:

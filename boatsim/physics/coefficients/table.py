@@ -12,6 +12,29 @@ from boatsim.physics.signals import Array
 
 
 @dataclass(frozen=True, eq=False)
+class WaveLoads:
+    """Loads of waves on a hull over frequency and heading, about its reference point.
+
+    Attributes:
+        source: Program and file, in words.
+        depth: Depth of the water [m]; 0 for deep water.
+        frequency: Angular frequencies of the waves (N,) [rad/s], increasing.
+        heading: Directions (H,) to which waves run [rad], from 0 to pi, clockwise from x. Waves of
+            pi come from ahead.
+        excitation: Complex excitation (N, H, 6) [N/m, N].
+        drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
+            amplitude [N/m^2, N/m]; None if it is not known.
+    """
+
+    source: str
+    depth: float
+    frequency: Array
+    heading: Array
+    excitation: Array
+    drift: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Coefficients:
     """Hydrodynamic coefficients of a hull at rest in waves, about its reference point.
 

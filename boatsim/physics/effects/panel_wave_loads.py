@@ -13,7 +13,7 @@ from boatsim.physics.coefficients.excitation_grid import (
     excitation_grid,
     mean_drift_force,
 )
-from boatsim.physics.coefficients.files import read_coefficients
+from boatsim.physics.coefficients.files import read_wave_loads
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.sea_parameters import SeaParameters
@@ -139,7 +139,7 @@ class PanelWaveLoads(SeaParameters, Force):
         """Return excitation and mean drift on a grid of frequency and heading."""
         if not self.coefficients:
             return EMPTY
-        return excitation_grid(read_coefficients(self.coefficients), self.coefficients)
+        return excitation_grid(read_wave_loads(self.coefficients), self.coefficients)
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the depth of the coefficients.
@@ -147,7 +147,7 @@ class PanelWaveLoads(SeaParameters, Force):
         Args:
             vessel: Vessel on which the effect acts.
         """
-        return {"depth": read_coefficients(self.coefficients).depth}
+        return {"depth": read_wave_loads(self.coefficients).depth}
 
     def with_all_parameters(self, vessel: Boat) -> "PanelWaveLoads":
         """Return a copy of the effect in which every parameter has a value.
@@ -165,7 +165,7 @@ class PanelWaveLoads(SeaParameters, Force):
                 "hydrodynamics writes"
             )
         own = super().with_all_parameters(vessel)
-        found = read_coefficients(own.coefficients)
+        found = read_wave_loads(own.coefficients)
         if abs(own.depth - found.depth) > DEPTHS * found.depth:
             raise BadInput(
                 f"{vessel.name}: {self.name}.depth = {own.depth:g} m; the coefficients hold for "
