@@ -14,7 +14,7 @@ from boatsim.hydrodynamics.axes import ASYMMETRY, asymmetry, with_memory
 from boatsim.hydrodynamics.mss import read_mss
 from boatsim.hydrodynamics.nemoh import RADIATION, read_nemoh
 from boatsim.hydrodynamics.rao_csv import read_rao_csv
-from boatsim.hydrodynamics.rao_table import RaoTable, at_origin, opposite_axes
+from boatsim.hydrodynamics.rao_table import Complex, RaoTable, at_origin, opposite_axes
 from boatsim.hydrodynamics.response import Ballast
 from boatsim.hydrodynamics.veres import SUFFIXES, read_veres
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit, read_wamit_operators
@@ -150,7 +150,10 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
         raise BadInput(f"{path}: --vessel applies to tables of motions; these are loads")
     if table.speed > 0.0:
         words += f" at {table.speed:g} m/s"
-    write_wave_loads(out, WaveLoads(words, table.depth, table.frequency, table.heading, loads))
+    write_wave_loads(
+        out,
+        WaveLoads(words, table.depth, table.frequency, table.heading, np.asarray(loads)),
+    )
     print_lines(
         [
             escape_for_terminal(words),
@@ -184,7 +187,7 @@ def _read_operators(path: Path, options: HydrodynamicsOptions) -> RaoTable:
     return found
 
 
-def _largest_loads(loads: Array, table: RaoTable, axes: Sequence[str]) -> list[str]:
+def _largest_loads(loads: Complex, table: RaoTable, axes: Sequence[str]) -> list[str]:
     """Lines on the largest load of each axis."""
     lines = []
     for axis in axes:

@@ -29,6 +29,7 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         BadInput: The file has no such structure, or not this speed.
     """
     from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
 
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
@@ -42,7 +43,10 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         shape = (len(frequency), len(heading), -1)
         size = [np.asarray(one, dtype=float).reshape(shape) for one in operators.amp]
         phase = [np.asarray(one, dtype=float).reshape(shape) for one in operators.phase]
-    except (AttributeError, KeyError, IndexError, NotImplementedError, TypeError, ValueError):
+    except (
+        *(AttributeError, KeyError, IndexError, TypeError, ValueError),
+        *(NotImplementedError, MatReadError),  # of files of another version, or none of MATLAB
+    ):
         raise BadInput(
             f"{path}: there is no structure `vessel` of MSS with motionRAO or forceRAO"
         ) from None

@@ -49,7 +49,7 @@ class RaoTable:
     @property
     def axes(self) -> tuple[str, ...]:
         """Names of the axes that the table has."""
-        given = ~np.isnan(self.values).any(axis=(0, 1))
+        given = np.asarray(~np.isnan(self.values).any(axis=(0, 1)))
         return tuple(axis for axis, known in zip(AXES, given, strict=True) if known)
 
 
@@ -85,7 +85,7 @@ def complete_table(waves: Array, values: Complex, path: Path) -> tuple[Array, Ar
             f"{np.degrees(angle[h]):.4g} deg"
         )
     heading, complete = on_starboard_side(angle, grid, path)
-    return frequency, heading, complete
+    return frequency, heading, np.asarray(complete, dtype=complex)
 
 
 def _distinct(values: Array) -> Array:

@@ -185,7 +185,7 @@ def read_wamit_operators(path: Path, scale: OutputScale, origin: float) -> RaoTa
     if not rows:
         raise BadInput(f"{path}: there is no period above 0")
     sname = excitation_to_sname(np.array(rows), conjugate=False)
-    frequency, heading, complete = complete_table(np.array(waves), sname, path)
+    frequency, heading, complete = complete_table(np.array(waves), sname.astype(complex), path)
     return RaoTable(
         source=f"WAMIT, {path.name}",
         kind="motion" if motion else "load",

@@ -13,7 +13,6 @@ from boatsim.simulate.steady_motion import find_steady_motion
 from boatsim.simulate.wave_response import Complex
 
 POSES = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
-AT_REST = 1e-3  # Froude number below which a vessel is at rest
 # [rad/s] times sqrt(L / g): the lowest frequency of encounter at which the response is taken. A
 # vessel without springs in surge, sway or yaw has no response to a steady force.
 LOWEST = 1e-6
@@ -58,12 +57,9 @@ def _linear_model(vessel: Vessel, speed: float) -> LinearModel:
     if speed > 0.0:
         steady = find_steady_motion(vessel, speed=speed)
     else:
-        steady = find_steady_motion(vessel)
-        if abs(steady.state.u) > AT_REST * np.sqrt(vessel.length * GRAVITY):
-            raise BadInput(
-                f"{vessel.name}: moves ahead at {steady.state.u:.3g} m/s with neutral commands; "
-                "motions at rest need a vessel that is at rest then"
-            )
+        neutral = {name: channel.neutral for name, channel in vessel.commands.items()}
+        rest = 0.0 if "surge" in vessel.dof else None
+        steady = find_steady_motion(vessel, neutral, rest)
     return linear_model(vessel, steady, position=True)
 
 
@@ -94,7 +90,7 @@ def loads_of_motion(
     Raises:
         BadInput: The vessel is free in none of the axes, or has no steady motion.
     """
-    known = ~np.isnan(motion).any(axis=(0, 1))
+    known = np.asarray(~np.isnan(motion).any(axis=(0, 1)))
     axes = [i for i, axis in enumerate(AXES) if known[i] and axis in vessel.dof]
     if not axes:
         given = [axis for i, axis in enumerate(AXES) if known[i]]

@@ -28,6 +28,8 @@ FREQUENCIES, HEADINGS = 96, 25
 # Sign of a component in the mirror at the plane of symmetry of the hull
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 DRIFT_MIRROR = np.array([1.0, -1.0, -1.0])  # of surge, sway and yaw
+# Share of a step by which a frequency may exceed the last one: rounding of a text file
+EDGE = 0.01
 CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
 
 
@@ -140,7 +142,7 @@ def grid_place(frequency: float, ahead: float, across: float, p: Array, first: A
     """
     count, headings = int(p[first + 2]), int(p[first + 3])
     along = max((frequency - p[first]) / p[first + 1], 0.0)
-    beyond = along > count - 1.0
+    beyond = along > count - 1.0 + EDGE
     along = min(along, count - 1.0)
     low = min(int(along), count - 2)
     side = 1.0
