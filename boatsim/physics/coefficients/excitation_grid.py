@@ -153,6 +153,17 @@ def grid_place(frequency: float, ahead: float, across: float, p: Array, first: A
     return GridPlace(low, along - low, left, side, beyond), cubic_weights(bearing - left)
 
 
+@njit(inline="always")
+def end_of_grid(p: Array, first: Any) -> Any:
+    """Return the index after the table of excitation and mean drift.
+
+    Args:
+        p: Parameters and tables.
+        first: Index of the table.
+    """
+    return first + HEAD + int(p[first + 2]) * int(p[first + 3]) * (VALUES + DRIFTS)
+
+
 @njit
 def excitation_force(
     frequency: float, ahead: float, across: float, c: float, s: float, p: Array, first: Any

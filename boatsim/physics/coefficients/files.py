@@ -5,6 +5,7 @@
     excitation.csv      a row for each frequency and heading: force per amplitude of the wave
     memory.csv          sections of the model of the memory of the radiation force
     drift.csv           a row for each frequency and heading: mean drift
+    drift_pairs.csv     a row for each pair of frequencies and heading: slow drift
 
 A folder of wave loads alone, such as those of a table of motions, has no radiation.csv and
 memory.csv, and only source, conventions and depth in coefficients.toml.
@@ -22,13 +23,15 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.files import read_toml, replace_file, toml_value
 from boatsim.physics.coefficients.memory_fit import SETS, MemoryModel
-from boatsim.physics.coefficients.table import Coefficients, WaveLoads
+from boatsim.physics.coefficients.pair_files import NAME as PAIRS
+from boatsim.physics.coefficients.pair_files import read_drift_pairs, write_drift_pairs
+from boatsim.physics.coefficients.table import Coefficients, DriftPairs, WaveLoads
 from boatsim.physics.signals import AXES, Array
 
 HEADER = "coefficients.toml"
 RADIATION, EXCITATION = "radiation.csv", "excitation.csv"
 MEMORY, DRIFT = "memory.csv", "drift.csv"
-FILES = (HEADER, RADIATION, EXCITATION, MEMORY, DRIFT)
+FILES = (HEADER, RADIATION, EXCITATION, MEMORY, DRIFT, PAIRS)
 AXES_TEXT = "SNAME: x forward, y starboard, z down"
 PHASE_TEXT = (
     "force = amplitude Re(X exp(i omega t)) for the elevation amplitude "
@@ -115,10 +118,7 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
     if found.memory is not None:
         _write_table(folder / MEMORY, MEMORY_COLUMNS, _memory_rows(found.memory))
-    if found.drift is None:
-        (folder / DRIFT).unlink(missing_ok=True)  # of earlier coefficients
-    else:
-        _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
+    _write_drift(folder, found)
 
 
 def write_wave_loads(folder: Path, found: WaveLoads) -> None:
@@ -146,10 +146,19 @@ def write_wave_loads(folder: Path, found: WaveLoads) -> None:
     with replace_file(folder / HEADER) as path:
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
+    _write_drift(folder, found)
+
+
+def _write_drift(folder: Path, found: Coefficients | WaveLoads) -> None:
+    """Write the drift, and remove that of earlier coefficients if there is none."""
     if found.drift is None:
-        (folder / DRIFT).unlink(missing_ok=True)  # of earlier loads
+        (folder / DRIFT).unlink(missing_ok=True)
     else:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
+    if found.drift_pairs is None:
+        (folder / PAIRS).unlink(missing_ok=True)
+    else:
+        write_drift_pairs(folder / PAIRS, found.drift_pairs)
 
 
 def _rounded(values: Array) -> list[float]:
@@ -247,7 +256,15 @@ def _read_wave_loads(folder: Path, _: tuple[int, ...]) -> WaveLoads:
         heading=heading,
         excitation=excitation,
         drift=drift,
+        drift_pairs=_read_pairs(folder),
     )
+
+
+def _read_pairs(folder: Path) -> DriftPairs | None:
+    """Read the slow drift of pairs of waves, None without its file."""
+    if not (folder / PAIRS).is_file():
+        return None
+    return read_drift_pairs(folder / PAIRS)
 
 
 @lru_cache(maxsize=8)
@@ -282,6 +299,7 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
         memory=memory,
         drift=drift,
         drift_of=str(header.get("drift_of", "")),
+        drift_pairs=_read_pairs(folder),
     )
 
 

@@ -7,8 +7,27 @@ positive upward, and its excitation is Re(X exp(i w t)) a.
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from boatsim.physics.coefficients.memory_fit import MemoryModel
 from boatsim.physics.signals import Array
+
+
+@dataclass(frozen=True, eq=False)
+class DriftPairs:
+    """Slow drift of pairs of waves of one direction: quadratic transfer functions.
+
+    Attributes:
+        frequency: Angular frequencies (M,) [rad/s], increasing.
+        heading: Directions to which the waves run (H,) [rad], from 0 to pi, clockwise from x.
+        values: Complex force and moment (M, M, H, 6) per product of both amplitudes, for the time
+            dependence exp(i (w_1 - w_2) t); the conjugate if the waves are exchanged [N/m^2, N/m].
+    """
+
+    frequency: Array
+    heading: Array
+    values: NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +43,7 @@ class WaveLoads:
         excitation: Complex excitation (N, H, 6) [N/m, N].
         drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
             amplitude [N/m^2, N/m]; None if it is not known.
+        drift_pairs: Slow drift of pairs of waves; None if it is not known.
     """
 
     source: str
@@ -32,6 +52,7 @@ class WaveLoads:
     heading: Array
     excitation: Array
     drift: Array | None = None
+    drift_pairs: DriftPairs | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +79,7 @@ class Coefficients:
         drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
             amplitude [N/m^2, N/m]; None if it is not known.
         drift_of: Hull that drifts, in words: its mass and gyradii.
+        drift_pairs: Slow drift of pairs of waves; None if it is not known.
     """
 
     source: str
@@ -76,3 +98,4 @@ class Coefficients:
     memory: MemoryModel | None = None
     drift: Array | None = None
     drift_of: str = ""
+    drift_pairs: DriftPairs | None = None

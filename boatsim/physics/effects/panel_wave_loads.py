@@ -8,7 +8,14 @@ from numba import njit
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
+from boatsim.physics.coefficients.drift_pairs import (
+    NO_PAIRS,
+    pair_amplitudes,
+    pair_table,
+    pair_weight,
+)
 from boatsim.physics.coefficients.excitation_grid import (
+    end_of_grid,
     excitation_force,
     excitation_grid,
     mean_drift_force,
@@ -23,7 +30,51 @@ DEPTHS = (
     0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
 )
 # The grid without coefficients: no force
-EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60)
+EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60, *NO_PAIRS)
+
+
+@njit
+def pair_drift(m: Any, q: Any, p: Array, table: Any) -> Wrench:
+    """Return the slow drift of all pairs of waves of a sea.
+
+    The sum over pairs is a sum over components of the squares of sums over waves. Each pass over
+    the waves has four components.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters of the effect.
+        p: Parameters and tables of all effects.
+        table: Index of the table of the pairs.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
+    X = Y = Z = K = M = N = 0.0
+    sea = sea_state(q)
+    for group in range(int(p[table])):
+        a = b = d = e = f = g = h = i = 0.0
+        ahead, across, run = heading_of_waves(q.toward, m)
+        for k in range(int(sea.number)):
+            w, amplitude, phase = wave_component(k, q, sea)
+            if q.spreading > 0.0:
+                ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+            here = w * m.t - wave_number(w, q.depth) * run + phase + pi
+            c, s = amplitude * cos(here), amplitude * sin(here)
+            u = pair_amplitudes(w, ahead, across, p, table, group)
+            a, b = a + u.real_1 * c - u.imaginary_1 * s, b + u.real_1 * s + u.imaginary_1 * c
+            d, e = d + u.real_2 * c - u.imaginary_2 * s, e + u.real_2 * s + u.imaginary_2 * c
+            f, g = f + u.real_3 * c - u.imaginary_3 * s, g + u.real_3 * s + u.imaginary_3 * c
+            h, i = h + u.real_4 * c - u.imaginary_4 * s, i + u.real_4 * s + u.imaginary_4 * c
+        one, two = a * a + b * b, d * d + e * e
+        three, four = f * f + g * g, h * h + i * i
+        at = pair_weight(p, table, group)
+        X += p[at] * one + p[at + 1] * two + p[at + 2] * three + p[at + 3] * four
+        Y += p[at + 4] * one + p[at + 5] * two + p[at + 6] * three + p[at + 7] * four
+        Z += p[at + 8] * one + p[at + 9] * two + p[at + 10] * three + p[at + 11] * four
+        K += p[at + 12] * one + p[at + 13] * two + p[at + 14] * three + p[at + 15] * four
+        M += p[at + 16] * one + p[at + 17] * two + p[at + 18] * three + p[at + 19] * four
+        N += p[at + 20] * one + p[at + 21] * two + p[at + 22] * three + p[at + 23] * four
+    return wrench(X=X, Y=Y, Z=Z, K=K, M=M, N=N)
 
 
 @njit
@@ -32,7 +83,8 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
 
     The waves travel on the water, which moves with the current. The drift is the product of the
     complex elevation and the complex elevation with its components weighted by their mean drift,
-    which equals the sum over pairs of components.
+    which equals the sum over pairs of components. With a table of pairs the drift is that of
+    `pair_drift`.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -48,6 +100,8 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
         return wrench()
     rise = turn = 0.0  # complex elevation at the origin of motion
     surge_rise = surge_turn = sway_rise = sway_turn = yaw_rise = yaw_turn = 0.0
+    pairs = end_of_grid(p, first)
+    newman = q.drift > 0.0 and p[pairs] == 0.0
     sea = sea_state(q)
     ahead, across, run = heading_of_waves(q.toward, m)
     for k in range(int(sea.number)):
@@ -64,7 +118,7 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
         K += amplitude * f.K
         M += amplitude * f.M
         N += amplitude * f.N
-        if q.drift > 0.0:
+        if newman:
             surge, sway, yaw = mean_drift_force(w, ahead, across, p, first)
             c, s = amplitude * c, amplitude * s
             rise, turn = rise + c, turn + s
@@ -74,6 +128,14 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     X += q.drift * (rise * surge_rise + turn * surge_turn)
     Y += q.drift * (rise * sway_rise + turn * sway_turn)
     N += q.drift * (rise * yaw_rise + turn * yaw_turn)
+    if q.drift > 0.0 and not newman:
+        slow = pair_drift(m, q, p, pairs)
+        X += q.drift * slow.X
+        Y += q.drift * slow.Y
+        Z += q.drift * slow.Z
+        K += q.drift * slow.K
+        M += q.drift * slow.M
+        N += q.drift * slow.N
     return wrench(X=X, Y=Y, Z=Z, K=K, M=M, N=N)
 
 
@@ -136,10 +198,14 @@ class PanelWaveLoads(SeaParameters, Force):
     )
 
     def table(self) -> tuple[float, ...]:
-        """Return excitation and mean drift on a grid of frequency and heading."""
+        """Return excitation and drift on grids of frequency and heading."""
         if not self.coefficients:
             return EMPTY
-        return excitation_grid(read_wave_loads(self.coefficients), self.coefficients)
+        found = read_wave_loads(self.coefficients)
+        grid = excitation_grid(found, self.coefficients)
+        if found.drift_pairs is None:
+            return (*grid, *NO_PAIRS)
+        return (*grid, *pair_table(found.drift_pairs, self.coefficients))
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the depth of the coefficients.
@@ -171,10 +237,10 @@ class PanelWaveLoads(SeaParameters, Force):
                 f"{vessel.name}: {self.name}.depth = {own.depth:g} m; the coefficients hold for "
                 f"{found.depth:g} m (0 is deep water)"
             )
-        if own.drift > 0.0 and found.drift is None:
+        if own.drift > 0.0 and found.drift is None and found.drift_pairs is None:
             raise BadInput(
                 f"{vessel.name}: {self.name}.drift = {own.drift:g}; {own.coefficients} has no "
-                "drift.csv, which boatsim hydrodynamics writes for a mesh"
+                "drift.csv, which boatsim hydrodynamics writes for a mesh, and no drift_pairs.csv"
             )
         own.table()  # a table that cannot be used is refused when the vessel is loaded
         return own
