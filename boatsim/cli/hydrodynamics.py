@@ -314,4 +314,11 @@ def _summary(found: Coefficients) -> list[str]:
             f"mean drift: {escape_for_terminal(found.drift_of)}",
             f"  {_largest_drift(found, found.drift)}",
         ]
+    if found.drift_pairs is not None:
+        pairs = found.drift_pairs
+        lines.append(
+            f"slow drift of pairs of waves: {len(pairs.frequency)} frequencies from "
+            f"{pairs.frequency[0]:.3g} to {pairs.frequency[-1]:.3g} rad/s, "
+            f"{len(pairs.heading)} headings"
+        )
     return lines

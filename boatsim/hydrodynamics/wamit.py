@@ -1,7 +1,7 @@
 """Coefficients from the output files of WAMIT.
 
 They are NAME.1, NAME.3 or NAME.2, and where they exist NAME.hst, NAME.8 or NAME.9, and NAME.12d or
-NAME.10d. Response amplitude operators are NAME.2, NAME.3 or NAME.4 alone.
+NAME.11d. Response amplitude operators are NAME.2, NAME.3 or NAME.4 alone.
 """
 
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from boatsim.hydrodynamics.axes import SIGNS, excitation_to_sname, to_sname
 from boatsim.hydrodynamics.headings import on_starboard_side
 from boatsim.hydrodynamics.mean_drift import DRIFT_AXES
 from boatsim.hydrodynamics.rao_table import RaoTable, complete_table
+from boatsim.hydrodynamics.wamit_pairs import pairs_next_to, wamit_pairs
 from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
@@ -84,6 +85,9 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         infinite = to_sname(np.nan_to_num(infinite))
     heading, excitation = _read_excitation(path, frequency, scale)
     drift, drift_of = _read_drift(path, frequency, heading, scale)
+    pairs, file = None, pairs_next_to(path)
+    if file is not None:
+        pairs = wamit_pairs(_read_numbers(file), file, scale.density, scale.length)
     return Coefficients(
         source=f"WAMIT, {path.name}",
         density=scale.density,
@@ -100,6 +104,7 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         excitation=excitation,
         drift=drift,
         drift_of=drift_of,
+        drift_pairs=pairs,
     )
 
 
