@@ -206,3 +206,14 @@ def pair_weight(p: Array, table: Any, group: Any) -> Any:
     """
     size = int(p[table + 3]) * int(p[table + 4]) * 2 * GROUP
     return table + HEAD + group * (WEIGHTS + size)
+
+
+@njit(inline="always")
+def end_of_pairs(p: Array, table: Any) -> Any:
+    """Return the index after the table of the pairs.
+
+    Args:
+        p: Parameters and tables.
+        table: Index of the table of the pairs.
+    """
+    return pair_weight(p, table, int(p[table]))

@@ -10,6 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.coefficients.drift_pairs import (
     NO_PAIRS,
+    end_of_pairs,
     pair_amplitudes,
     pair_table,
     pair_weight,
@@ -24,17 +25,22 @@ from boatsim.physics.coefficients.files import read_wave_loads
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.sea_parameters import SeaParameters
-from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
+from boatsim.physics.waves.sea_state import (
+    has_directions,
+    sea_state,
+    wave_component,
+    wave_direction,
+)
 
 DEPTHS = (
     0.01  # relative difference of the depths of the sea and of the coefficients that is allowed
 )
 # The grid without coefficients: no force
-EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60, *NO_PAIRS)
+EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60, *NO_PAIRS, 0.0)
 
 
 @njit
-def pair_drift(m: Any, q: Any, p: Array, table: Any) -> Wrench:
+def pair_drift(m: Any, q: Any, p: Array, table: Any, waves: Any) -> Wrench:
     """Return the slow drift of all pairs of waves of a sea.
 
     The sum over pairs is a sum over components of the squares of sums over waves. Each pass over
@@ -45,19 +51,20 @@ def pair_drift(m: Any, q: Any, p: Array, table: Any) -> Wrench:
         q: Parameters of the effect.
         p: Parameters and tables of all effects.
         table: Index of the table of the pairs.
+        waves: Index of the table of a tabulated sea.
 
     Returns:
         Force [N] and moment [N m] in body axes.
     """
     X = Y = Z = K = M = N = 0.0
-    sea = sea_state(q)
+    sea = sea_state(q, p, waves)
     for group in range(int(p[table])):
         a = b = d = e = f = g = h = i = 0.0
         ahead, across, run = heading_of_waves(q.toward, m)
         for k in range(int(sea.number)):
-            w, amplitude, phase = wave_component(k, q, sea)
-            if q.spreading > 0.0:
-                ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+            w, amplitude, phase = wave_component(k, q, sea, p, waves)
+            if has_directions(q):
+                ahead, across, run = heading_of_waves(wave_direction(k, q, p, waves), m)
             here = w * m.t - wave_number(w, q.depth) * run + phase + pi
             c, s = amplitude * cos(here), amplitude * sin(here)
             u = pair_amplitudes(w, ahead, across, p, table, group)
@@ -101,13 +108,14 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     rise = turn = 0.0  # complex elevation at the origin of motion
     surge_rise = surge_turn = sway_rise = sway_turn = yaw_rise = yaw_turn = 0.0
     pairs = end_of_grid(p, first)
+    waves = end_of_pairs(p, pairs)
     newman = q.drift > 0.0 and p[pairs] == 0.0
-    sea = sea_state(q)
+    sea = sea_state(q, p, waves)
     ahead, across, run = heading_of_waves(q.toward, m)
     for k in range(int(sea.number)):
-        w, amplitude, phase = wave_component(k, q, sea)
-        if q.spreading > 0.0:
-            ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+        w, amplitude, phase = wave_component(k, q, sea, p, waves)
+        if has_directions(q):
+            ahead, across, run = heading_of_waves(wave_direction(k, q, p, waves), m)
         # Components have a trough at phase 0
         here = w * m.t - wave_number(w, q.depth) * run + phase + pi
         c, s = cos(here), sin(here)
@@ -129,7 +137,7 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     Y += q.drift * (rise * sway_rise + turn * sway_turn)
     N += q.drift * (rise * yaw_rise + turn * yaw_turn)
     if q.drift > 0.0 and not newman:
-        slow = pair_drift(m, q, p, pairs)
+        slow = pair_drift(m, q, p, pairs, waves)
         X += q.drift * slow.X
         Y += q.drift * slow.Y
         Z += q.drift * slow.Z
@@ -177,7 +185,7 @@ class PanelWaveLoads(SeaParameters, Force):
         "Int. Symp. Dynamics of Marine Vehicles and Structures in Waves, London 1974"
     )
     sees_table: ClassVar[bool] = True
-    paths: ClassVar = ("coefficients",)
+    paths: ClassVar = ("coefficients", "spectrum_file")
     law: ClassVar = law
 
     coefficients: str = field(default="")  # folder that `boatsim hydrodynamics` writes
@@ -198,14 +206,15 @@ class PanelWaveLoads(SeaParameters, Force):
     )
 
     def table(self) -> tuple[float, ...]:
-        """Return excitation and drift on grids of frequency and heading."""
+        """Return excitation and drift on grids of frequency and heading, and a tabulated sea."""
         if not self.coefficients:
             return EMPTY
         found = read_wave_loads(self.coefficients)
         grid = excitation_grid(found, self.coefficients)
         if found.drift_pairs is None:
-            return (*grid, *NO_PAIRS)
-        return (*grid, *pair_table(found.drift_pairs, self.coefficients))
+            return (*grid, *NO_PAIRS, *self.sea_table())
+        pairs = pair_table(found.drift_pairs, self.coefficients)
+        return (*grid, *pairs, *self.sea_table())
 
     def derived_parameters(self, vessel: Boat) -> dict[str, float]:
         """Return the depth of the coefficients.

@@ -8,13 +8,18 @@ from numba import njit
 
 from boatsim.errors import BadInput
 from boatsim.physics import particulars
-from boatsim.physics.base import AXES, UNSET, Boat, Force, Wrench, param, wrench
+from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.debugging import interpreted
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.hull_strips import line_value, strip_hull, strip_place
 from boatsim.physics.waves.sea_parameters import SeaParameters
-from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
+from boatsim.physics.waves.sea_state import (
+    has_directions,
+    sea_state,
+    wave_component,
+    wave_direction,
+)
 from boatsim.physics.waves.strip_loads import EncounteredWave, wave_loads
 
 GRAVITY = particulars.GRAVITY
@@ -22,7 +27,7 @@ POINTED = 0.2  # gyradius squared of a parabola that ends in points, over half t
 
 
 @njit
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     """Return the force of a sea on the strips of a hull.
 
     It is a sum over wave components. The waves travel on the water, which moves with the current.
@@ -30,6 +35,8 @@ def law(m: Any, q: Any) -> Wrench:
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
         q: Parameters of the effect, with the names and units of its class.
+        p: Parameters and tables of all effects.
+        first: Index of the effect's table.
 
     Returns:
         Force [N] and moment [N m] in body axes.
@@ -37,12 +44,12 @@ def law(m: Any, q: Any) -> Wrench:
     X = Y = Z = K = M = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
-    hull, sea = strip_hull(q), sea_state(q)
+    hull, sea = strip_hull(q), sea_state(q, p, first)
     ahead, across, run = heading_of_waves(q.toward, m)
     for k in range(int(sea.number)):
-        w, amplitude, phase = wave_component(k, q, sea)
-        if q.spreading > 0.0:
-            ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+        w, amplitude, phase = wave_component(k, q, sea, p, first)
+        if has_directions(q):
+            ahead, across, run = heading_of_waves(wave_direction(k, q, p, first), m)
         number = wave_number(w, q.depth)
         # Components have a trough at phase 0
         here = w * m.t - number * run + phase + pi
@@ -146,6 +153,7 @@ class StripWaveLoads(SeaParameters, Force):
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, chapter 3; "
         "N. Salvesen, E. O. Tuck, O. M. Faltinsen, Ship Motions and Sea Loads, SNAME 78, 1970"
     )
+    sees_table: ClassVar[bool] = True
     law: ClassVar = law
 
     strips: float = param(20.0, low=3.0, high=400.0, unit="", words="number of strips")
@@ -236,6 +244,10 @@ class StripWaveLoads(SeaParameters, Force):
     roll_damping: float = damping_parameter("roll", "N m s")
     pitch_damping: float = damping_parameter("pitch", "N m s")
     yaw_damping: float = damping_parameter("yaw", "N m s")
+
+    def table(self) -> tuple[float, ...]:
+        """Return the table of a tabulated sea."""
+        return self.sea_table()
 
     def wave_axes(self) -> tuple[str, ...]:
         """Return the degrees of freedom in which the sea exerts a force; empty if it is calm."""
