@@ -4,7 +4,7 @@ Compiled laws compute them from the numbers of a sea, so that no vessel stores a
 tabulated sea has its cells in a table, `tabulated.spectrum_table`, and the same random numbers.
 """
 
-from math import exp, log, pi, sqrt
+from math import atan2, exp, log, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -208,6 +208,9 @@ def has_directions(q: Any) -> Any:
 def tabulated_direction(k: int, q: Any, p: Array, at: Any) -> float:
     """Return the direction to which one wave of a tabulated sea runs [rad].
 
+    The table has the directions below which the share sin^2(pi j / 2 n) of the energy lies, so that
+    both ends of the distribution are fine too; in between they are linear in j.
+
     Args:
         k: Number of the wave, from 0.
         q: Parameters of the effect.
@@ -215,7 +218,8 @@ def tabulated_direction(k: int, q: Any, p: Array, at: Any) -> float:
         at: Index of the table of the sea.
     """
     shares = int(p[at + 3])
-    place = uniform_random(q.realisation, DIRECTIONS + 2 * k) * shares
+    below = uniform_random(q.realisation, DIRECTIONS + 2 * k)
+    place = 2.0 / pi * atan2(sqrt(below), sqrt(1.0 - below)) * shares
     low = min(int(place), shares - 1)
     row = at + CELLS + k * (shares + 2) + 1 + low
     return float(p[row] + (place - low) * (p[row + 1] - p[row]))

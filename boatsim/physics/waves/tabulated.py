@@ -28,7 +28,7 @@ DIRECTIONAL = {
     "density_m2_per_hz_deg": 0.5 / pi / ANGLES["deg"],
     "density_m2s_per_rad2": 1.0,
 }
-# Equal shares of the energy of a cell whose directions are stored; in between they are linear
+# Shares of the energy of a cell at whose ends its directions are stored; in between they are linear
 SHARES = 32
 FINE = 16  # points of a direction between two of the table, by which its energy is integrated
 CLOSE = 1e-5  # relative difference of frequencies and [rad] of directions that are the same
@@ -152,8 +152,8 @@ def spectrum_table(found: TabulatedSpectrum, components: int, cut: float) -> tup
     """Return the table of a sea's cells, as compiled laws read it.
 
     It has the number of cells, the lowest frequency and the width of a cell [rad/s] and the number
-    of equal shares of the energy of a cell. Then follow for each cell its share of the energy of
-    the spectrum and the directions [rad] at the ends of these shares.
+    of shares into which the directions of a cell are divided. Then follow for each cell its part of
+    the energy of the spectrum and the directions [rad] at the ends of these shares.
 
     Args:
         found: The spectrum.
@@ -180,7 +180,7 @@ def spectrum_table(found: TabulatedSpectrum, components: int, cut: float) -> tup
 
 
 def _direction_shares(found: TabulatedSpectrum, frequency: float) -> Array:
-    """Return the directions at the ends of equal shares of the energy of a frequency.
+    """Return the directions below which the shares sin^2(pi j / 2 n) of the energy lie.
 
     They begin where the density is least, so that no share lies on both sides of it.
     """
@@ -199,7 +199,7 @@ def _direction_shares(found: TabulatedSpectrum, frequency: float) -> Array:
     below = np.append(0.0, np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(fine)))
     if below[-1] <= 0.0:
         return np.zeros(SHARES + 1)
-    wanted = np.linspace(0.0, 1.0, SHARES + 1)
+    wanted = np.sin(np.linspace(0.0, 0.5 * pi, SHARES + 1)) ** 2
     # where the density is 0 the sum does not grow: the last such direction begins the first share
     rising = np.append(np.diff(below) > 0.0, True)
     return np.asarray(np.interp(wanted, below[rising] / below[-1], fine[rising]))
