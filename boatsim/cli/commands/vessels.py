@@ -10,7 +10,7 @@ import typer
 
 from boatsim.cli.application import app, exits_with_code
 from boatsim.cli.exits import print_lines
-from boatsim.cli.options import Content, Load, Trusted, parse_folder, split_loads
+from boatsim.cli.options import Content, Load, Trusted, parse_file, parse_folder, split_loads
 from boatsim.cli.trust_prompt import trusted_content
 
 
@@ -372,6 +372,52 @@ def hydrodynamics(
         speed=speed,
     )
     return write_hydrodynamics(hull, options)
+
+
+@app.command()
+@exits_with_code
+def spectrum(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="SOURCE",
+            help="A table (.csv), a file of a buoy or wave model with --format, or a scenario.",
+        ),
+    ],
+    format_: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="Format of the file: ndbc, ndbc_ascii, swan, ncswan, ww3, ...",
+        ),
+    ] = None,
+    time: Annotated[
+        int, typer.Option(metavar="N", help="Number of the time in the file, from 0; -1: last.")
+    ] = 0,
+    site: Annotated[
+        int, typer.Option(metavar="N", help="Number of the site in the file, from 0.")
+    ] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            parser=parse_file,
+            help="File to write: .csv, or .nc, .swn (SWAN), .json of wavespectra.",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Read a wave spectrum of a buoy, model or scenario, and write it to another file.
+
+    A sea with spectrum = "tabulated" and spectrum_file reads the .csv file. Formats of buoys and
+    models need boatsim[spectra].
+    """
+    from boatsim.cli.spectrum import convert_spectrum
+
+    with trusted_content(content, trust, [source]):
+        return convert_spectrum(source, format_, time, site, out)
 
 
 @app.command("list")
