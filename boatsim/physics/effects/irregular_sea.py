@@ -107,10 +107,11 @@ class IrregularSea(SeaParameters, Force):
     `spectrum` is "bretschneider" (by height and period), "pierson_moskowitz" (a fully developed
     sea, whose period follows from the height), "jonswap" (with the peak enhancement `gamma`),
     "torsethaugen" (wind sea and swell of the open ocean) or "regular": one wave of
-    `significant_height` from trough to crest, with its crest at the origin at t = 0. The
-    realisation and the seed of the scenario give the frequencies inside their cells and the phases,
-    with `spreading` the directions, and with `random_amplitudes` = 1 the amplitudes. Each component
-    has one direction.
+    `significant_height` from trough to crest, with its crest at the origin at t = 0. With
+    "tabulated" it is that of the file `spectrum_file`, whose height holds if none is given, and
+    whose directions are turned by `toward`. The realisation and the seed of the scenario give the
+    frequencies inside their cells and the phases, with `spreading` the directions, and with
+    `random_amplitudes` = 1 the amplitudes. Each component has one direction.
 
     The spectrum ends at `cut`, by default at four times the modal frequency, and that of
     Torsethaugen where 0.5 % of the energy lies above; a cut above which more than 2 % of the energy

@@ -159,9 +159,13 @@ class PanelWaveLoads(SeaParameters, Force):
     diffraction, without forward speed. beta = gamma - psi is the direction of the wave relative to
     the hull. D is the mean drift of a wave of unit amplitude in surge, sway and yaw, and `drift` is
     the factor f on the mean and slowly varying drift: 1 for the whole drift, 0 for none. The double
-    sum is Newman's approximation. `coefficients` is the folder that `boatsim hydrodynamics` writes,
-    about the vessel's origin of motion. The sea is that of `irregular_sea`: `spectrum`,
-    `significant_height`, `modal_period`, `toward` and the other parameters have the same meaning.
+    sum is Newman's approximation. If the folder has a drift_pairs.csv, the drift is that of the
+    full quadratic transfer functions D(w_i, w_k) of its pairs of waves instead, the real part of
+    f sum_i sum_k a_i a_k D_j(w_i, w_k, beta) exp(i (theta_i - theta_k)), in all axes that it has.
+    `coefficients` is the folder that `boatsim hydrodynamics` writes, about the vessel's origin of
+    motion: for a hull, or for a table of response amplitude operators. The sea is that of
+    `irregular_sea`: `spectrum`, `significant_height`, `modal_period`, `toward` and the other
+    parameters have the same meaning.
     Below the lowest frequency of the table excitation and drift are those of the lowest one; above
     the highest the excitation is zero and the drift is that of the highest one.
     """
@@ -182,7 +186,8 @@ class PanelWaveLoads(SeaParameters, Force):
         "J. N. Newman, Marine Hydrodynamics, 1977, section 6.18; "
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.2; "
         "drift: J. N. Newman, Second-order, slowly-varying forces on vessels in irregular waves, "
-        "Int. Symp. Dynamics of Marine Vehicles and Structures in Waves, London 1974"
+        "Int. Symp. Dynamics of Marine Vehicles and Structures in Waves, London 1974; "
+        "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 5.2"
     )
     sees_table: ClassVar[bool] = True
     paths: ClassVar = ("coefficients", "spectrum_file")
