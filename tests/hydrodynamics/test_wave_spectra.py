@@ -161,7 +161,9 @@ def test_height_and_direction_are_those_of_wavespectra(tmp_path: Path) -> None:
     found = directional()
     wave_spectra.write_file(tmp_path / "sea.nc", found)
     data = package.read_netcdf(str(tmp_path / "sea.nc"))
-    assert float(data.spec.hs(tail=False).squeeze()) == pytest.approx(found.significant_height, rel=1e-3)
+    assert float(data.spec.hs(tail=False).squeeze()) == pytest.approx(
+        found.significant_height, rel=1e-3
+    )
     # waves that run to -1 rad come from the opposite direction
     coming = float(data.spec.dm().squeeze())
     assert coming == pytest.approx(np.degrees(pi - 1.0), abs=0.1)

@@ -32,7 +32,7 @@ def linear_motions(dof: tuple[str, ...]) -> tuple[FloatingCatamaran, Complex]:
     return catamaran, motion
 
 
-@pytest.mark.parametrize("dof", [AXES, UPRIGHT])
+@pytest.mark.parametrize("dof", [pytest.param(AXES, marks=pytest.mark.slow), UPRIGHT])
 def test_loads_are_the_excitation_that_causes_the_motion(
     tmp_path: Path, dof: tuple[str, ...]
 ) -> None:
@@ -97,6 +97,7 @@ def test_simulated_response_is_the_table(tmp_path: Path, dof: tuple[str, ...]) -
     assert errors.max() < 0.01  # the springs of the simulation change the response by 0.25 %
 
 
+@pytest.mark.slow
 def test_moving_vessel_responds_at_the_frequency_of_encounter(tmp_path: Path) -> None:
     vessel = FloatingCatamaran().vessel(tmp_path / "catamaran", ("surge", "heave"))
     vessel = vessel.without_effect("ground_spring")
@@ -120,6 +121,7 @@ def test_vessel_that_is_free_in_no_axis_of_the_table_is_refused() -> None:
         loads_of_motion(load_vessel("osv"), *waves, motion, waves[0])
 
 
+@pytest.mark.slow
 def test_springs_and_memory_belong_to_the_vessel(tmp_path: Path) -> None:
     """Without its springs in the plane the vessel needs a smaller load in long waves."""
     catamaran, motion = linear_motions(AXES)

@@ -21,6 +21,7 @@ from boatsim.physics.coefficients.table import DriftPairs, WaveLoads
 from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.batch import Batch
+from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
 from tests.physics.coefficients.test_output_files import DENSITY, LENGTH, SIGNS, write_wamit
 
@@ -148,13 +149,18 @@ def test_engines_and_batch_have_the_same_drift(tmp_path: Path) -> None:
     table = {"use": "panel_wave_loads", "coefficients": str(tmp_path / "hull"), "drift": 1.0}
     waves = {"significant_height": 0.2, "modal_period": 1.7, "toward": 1.0, "components": 12.0}
     vessel = load_vessel("otter").with_effect({**table, **waves})
-    one, many = OpenWater(vessel, step=0.02), Batch(vessel, 2, step=0.02)
-    one.reset()
-    many.reset()
-    one.advance(200)
-    many.advance(200)
-    assert one.state.y != 0.0
-    assert many.state["y"][1] == pytest.approx(one.state.y, rel=1e-12)
+    states = []
+    for kind in (OpenWater, Engine):
+        engine = kind(vessel, step=0.02)
+        engine.advance(200)
+        states.append(np.array(engine.state[1:]))
+    assert states[1] == pytest.approx(states[0], rel=1e-9, abs=1e-12)
+    batch = Batch(vessel, 2, step=0.02)
+    batch.advance(steps=200)
+    assert batch.states[1] == pytest.approx(states[0], rel=1e-9, abs=1e-12)
+    calm = OpenWater(load_vessel("otter").with_effect({**table, **waves, "drift": 0.0}), step=0.02)
+    calm.advance(200)
+    assert np.abs(np.array(calm.state[1:]) - states[0]).max() > 1e-4  # the drift moves the vessel
 
 
 # Files

@@ -120,6 +120,7 @@ def test_a_direction_is_not_between_two_wave_systems(tmp_path: Path) -> None:
     assert np.mean(first) == pytest.approx(0.5, abs=0.07)
 
 
+@pytest.mark.slow
 def test_a_table_and_a_formula_are_the_same_sea(tmp_path: Path) -> None:
     """The rms force on a hull over realisations."""
     boat = {"coefficients": str(OTTER), "depth": 0.0, "toward": 1.0, "components": 60.0}
@@ -145,8 +146,11 @@ def test_a_table_and_a_formula_are_the_same_sea(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "effect",
     [
-        {"use": "irregular_sea"},
-        {"use": "strip_wave_loads", "hull_spacing": 0.79, "hull_beam": 0.25},
+        pytest.param({"use": "irregular_sea"}, marks=pytest.mark.slow),
+        pytest.param(
+            {"use": "strip_wave_loads", "hull_spacing": 0.79, "hull_beam": 0.25},
+            marks=pytest.mark.slow,
+        ),
         {"use": "panel_wave_loads", "coefficients": str(OTTER), "drift": 1.0},
     ],
 )
@@ -187,6 +191,7 @@ def test_the_force_is_the_sum_over_the_waves_of_the_field(
     assert found == pytest.approx(total, rel=1e-6, abs=1e-6 * np.abs(total).max())
 
 
+@pytest.mark.slow
 def test_a_boat_meets_the_elevation_of_the_file(tmp_path: Path) -> None:
     path = directional_file(tmp_path / "sea.csv", 0.5, 4.0)
     table = {"use": "irregular_sea", "spectrum": "tabulated", "spectrum_file": str(path)}
