@@ -95,9 +95,9 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
     out = options.out or hull.parent / FOLDER
     if hull.suffix.lower() in OPERATORS:
         return _write_operators(hull, options, out)
-    if options.vessel is not None or options.speed != 0.0:
+    if options.vessel is not None or options.loads or options.speed != 0.0:
         raise BadInput(
-            f"{hull}: --vessel and --speed apply to tables of response amplitude operators "
+            f"{hull}: --vessel, --load and --speed apply to tables of response amplitude operators "
             f"({', '.join(OPERATORS)})"
         )
     notes: list[str] = []
@@ -146,8 +146,8 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
         unused = [axis for axis in table.axes if axis not in axes]
         if unused:
             notes.append(f"{vessel.name} is not free in {', '.join(unused)}; not used")
-    elif options.vessel is not None:
-        raise BadInput(f"{path}: --vessel applies to tables of motions; these are loads")
+    elif options.vessel is not None or options.loads:
+        raise BadInput(f"{path}: --vessel and --load apply to tables of motions; these are loads")
     if table.speed > 0.0:
         words += f" at {table.speed:g} m/s"
     write_wave_loads(

@@ -294,8 +294,11 @@ def test_the_command_notes_what_it_does_not_use(tmp_path: Path) -> None:
         (["{path}", "--vessel", "ottr"], "did you mean 'otter'"),
         (["{path}", "--vessel", "otter", "--speed", "2"], "--speed = 2 m/s; the table has 0 m/s"),
         (["{path}", "--vessel", "otter", "--out", str(OTTER)], "contains the coefficients of a"),
-        (["{load}", "--vessel", "otter"], "--vessel applies to tables of motions"),
-        (["{mesh}", "--vessel", "otter", "--draught", "1"], "--vessel and --speed apply to tables"),
+        (["{load}", "--vessel", "otter"], "--vessel and --load apply to tables of motions"),
+        (
+            ["{mesh}", "--vessel", "otter", "--draught", "1"],
+            "--vessel, --load and --speed apply to tables",
+        ),
         (["{mesh}"], "--draught is required for a mesh"),
         (["{other}", "--draught", "1"], "tables of response amplitude operators (.2, .3, .4"),
     ],

@@ -264,7 +264,9 @@ def hydrodynamics(
     ] = 0.0,
     origin: Annotated[
         float,
-        typer.Option(metavar="X", help="Origin of motion of the vessel along x of the mesh [m]."),
+        typer.Option(
+            metavar="X", help="Origin of motion of the vessel along x of the mesh or of WAMIT [m]."
+        ),
     ] = 0.0,
     scale: Annotated[
         float,
@@ -340,6 +342,8 @@ def hydrodynamics(
             min=0.0, max=100.0, metavar="U", help="Forward speed of a table of operators [m/s]."
         ),
     ] = 0.0,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Compute hydrodynamic coefficients of a hull by Capytaine, or convert those of WAMIT or Nemoh.
 
@@ -371,7 +375,9 @@ def hydrodynamics(
         loads=split_loads(load),
         speed=speed,
     )
-    return write_hydrodynamics(hull, options)
+    names = [] if vessel is None else [vessel]
+    with trusted_content(content, trust, names):
+        return write_hydrodynamics(hull, options)
 
 
 @app.command()
