@@ -139,8 +139,8 @@ def rms_accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], flo
 
     The accelerations are yaw, sway and direct roll [deg/s^2].
     """
-    law, m = IrregularSea.law, make_motion()
-    w = Wrench(*np.array([law(m, sea.with_seed(i).values()) for i in range(REALISATIONS)]).T)
+    m = make_motion()
+    w = Wrench(*np.array([sea.with_seed(i).wrench(m) for i in range(REALISATIONS)]).T)
     direct = w.K - sea.arm * w.Y
     parts = zip((w.N, w.Y, direct), mass_matrix(boat).diagonal(), strict=True)
     slope = direct.std() / (sea.stiffness * abs(np.sin(sea.toward)))

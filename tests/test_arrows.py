@@ -54,6 +54,8 @@ HEAVY = {  # library -> the only modules that may import it
     "pyulog": {"recordings.logs.ulog"},
     "pynmea2": {"recordings.logs.nmea"},
     "websockets": {"drive.server"},
+    "wavespectra": {"hydrodynamics.wave_spectra"},
+    "xarray": {"hydrodynamics.wave_spectra"},
     "pandas": {"recordings.notebook.data_frame", "recordings.table", "api"},
     "matplotlib": {
         "recordings.notebook.figures",

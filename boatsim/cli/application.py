@@ -52,7 +52,7 @@ COMMAND_GROUPS = {
     ),
     "Look at results": ("open",),
     "Learn from recordings": ("import", "check", "diagnose", "replay", "compare", "export"),
-    "Vessels and content": ("new", "hydrostatics", "hydrodynamics", "list", "show"),
+    "Vessels and content": ("new", "hydrostatics", "hydrodynamics", "spectrum", "list", "show"),
 }
 
 

@@ -1,5 +1,6 @@
 """Implementation of `boatsim hydrodynamics`: coefficients of a hull over frequency and heading."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,14 +11,22 @@ from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.hydrodynamics import computation
 from boatsim.hydrodynamics.axes import ASYMMETRY, asymmetry, with_memory
+from boatsim.hydrodynamics.mss import read_mss
 from boatsim.hydrodynamics.nemoh import RADIATION, read_nemoh
+from boatsim.hydrodynamics.rao_csv import read_rao_csv
+from boatsim.hydrodynamics.rao_table import Complex, RaoTable, at_origin, opposite_axes
 from boatsim.hydrodynamics.response import Ballast
-from boatsim.hydrodynamics.wamit import OutputScale, read_wamit
-from boatsim.physics.coefficients.files import write_coefficients
-from boatsim.physics.coefficients.table import Coefficients
-from boatsim.physics.signals import AXES, Array
+from boatsim.hydrodynamics.veres import SUFFIXES, read_veres
+from boatsim.hydrodynamics.wamit import OutputScale, read_wamit, read_wamit_operators
+from boatsim.physics.coefficients.files import write_coefficients, write_wave_loads
+from boatsim.physics.coefficients.table import Coefficients, WaveLoads
+from boatsim.physics.signals import AXES, ROTATIONS, Array
+from boatsim.physics.vessel import load_vessel
+from boatsim.physics.waves.dispersion import wave_number
+from boatsim.simulate.motion_loads import loads_of_motion
 
 FOLDER = "hydrodynamics"  # default name of the folder of coefficients
+OPERATORS = (".2", ".3", ".4", ".re1", ".re8", ".mat", ".csv")  # of response amplitude operators
 STUDIED = 3  # frequencies of the comparison of meshes
 FINEST = 1600  # panels up to which a mesh is compared with one of four times as many
 
@@ -27,7 +36,7 @@ class HydrodynamicsOptions:
     """Options of the command.
 
     Attributes:
-        draught: Draught [m].
+        draught: Draught [m]; None for a table of response amplitude operators.
         density: Density of the water [kg/m^3].
         depth: Depth of the water [m]; 0 for deep water.
         origin: Place of the origin of motion in the mesh, along x [m].
@@ -43,9 +52,12 @@ class HydrodynamicsOptions:
         roll_damping: Damping of roll added to that of the waves, as a share of the critical one.
         compare: Whether the mesh is compared with one of half the panel size.
         out: Folder to write; None for `hydrodynamics` next to the hull.
+        vessel: Vessel that moves as a table of motions states; None for another file.
+        loads: Its load conditions.
+        speed: Forward speed of a table of response amplitude operators [m/s].
     """
 
-    draught: float
+    draught: float | None
     density: float
     depth: float
     origin: float
@@ -61,13 +73,17 @@ class HydrodynamicsOptions:
     roll_damping: float
     compare: bool
     out: Path | None
+    vessel: str | None = None
+    loads: Sequence[str] = ()
+    speed: float = 0.0
 
 
 def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
     """Compute or convert the coefficients of a hull, write them to a folder and print a summary.
 
     Args:
-        hull: A mesh, WAMIT's NAME.1, or Nemoh's folder or RadiationCoefficients.tec.
+        hull: A mesh, WAMIT's NAME.1, Nemoh's folder or RadiationCoefficients.tec, or a table of
+            response amplitude operators.
         options: Options of the command.
 
     Returns:
@@ -77,6 +93,13 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
         BadInput: The hull cannot be read, or Capytaine is not installed.
     """
     out = options.out or hull.parent / FOLDER
+    if hull.suffix.lower() in OPERATORS:
+        return _write_operators(hull, options, out)
+    if options.vessel is not None or options.loads or options.speed != 0.0:
+        raise BadInput(
+            f"{hull}: --vessel, --load and --speed apply to tables of response amplitude operators "
+            f"({', '.join(OPERATORS)})"
+        )
     notes: list[str] = []
     if hull.suffix.lower() in computation.MESHES:
         found, notes = _from_mesh(hull, options)
@@ -97,23 +120,111 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
     return 0
 
 
+def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> int:
+    """Convert a table of response amplitude operators, write the loads and print a summary."""
+    table = at_origin(_read_operators(path, options))
+    notes = []
+    opposite = opposite_axes(table)
+    if opposite:
+        notes.append(
+            f"{path.name}: {', '.join(opposite)} of the longest waves, "
+            f"{table.frequency[0]:.3g} rad/s, oppose the motion of the surface; check axes, phase "
+            "and direction of the table"
+        )
+    loads = np.nan_to_num(table.values)
+    words = f"{table.kind}s of {table.source}"
+    axes = table.axes
+    if table.kind == "motion":
+        if options.vessel is None:
+            raise BadInput(f"{path}: a table of motions needs --vessel, the vessel that moves so")
+        vessel = load_vessel(options.vessel, options.loads)
+        number = np.asarray(wave_number(table.frequency, table.depth))
+        loads, axes = loads_of_motion(
+            vessel, table.frequency, table.heading, table.values, number, table.speed
+        )
+        words += f" for {vessel.name}"
+        unused = [axis for axis in table.axes if axis not in axes]
+        if unused:
+            notes.append(f"{vessel.name} is not free in {', '.join(unused)}; not used")
+    elif options.vessel is not None or options.loads:
+        raise BadInput(f"{path}: --vessel and --load apply to tables of motions; these are loads")
+    if table.speed > 0.0:
+        words += f" at {table.speed:g} m/s"
+    write_wave_loads(
+        out,
+        WaveLoads(words, table.depth, table.frequency, table.heading, np.asarray(loads)),
+    )
+    print_lines(
+        [
+            escape_for_terminal(words),
+            f"{len(table.frequency)} frequencies from {table.frequency[0]:.3g} to "
+            f"{table.frequency[-1]:.3g} rad/s, {len(table.heading)} headings",
+            f"loads in {', '.join(axes)}",
+            *_largest_loads(loads, table, axes),
+        ]
+    )
+    print_notes(notes)
+    print_lines([escape_for_terminal(f"written to {out}")])
+    return 0
+
+
+def _read_operators(path: Path, options: HydrodynamicsOptions) -> RaoTable:
+    """Read a table of response amplitude operators by the suffix of its file."""
+    suffix = path.suffix.lower()
+    if suffix in SUFFIXES:
+        return read_veres(path, options.depth, options.speed)
+    if suffix == ".mat":
+        return read_mss(path, options.depth, options.speed)
+    if suffix == ".csv":
+        found = read_rao_csv(path, options.depth)
+    else:
+        scale = OutputScale(options.scale, options.density, options.depth, 0.0)
+        found = read_wamit_operators(path, scale, options.origin)
+    if options.speed != found.speed and options.speed != 0.0:
+        raise BadInput(
+            f"{path}: --speed = {options.speed:g} m/s; the table has {found.speed:g} m/s"
+        )
+    return found
+
+
+def _largest_loads(loads: Complex, table: RaoTable, axes: Sequence[str]) -> list[str]:
+    """Lines on the largest load of each axis."""
+    lines = []
+    for axis in axes:
+        sizes = np.abs(loads[:, :, AXES.index(axis)])
+        k, h = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
+        unit = "N" if axis in ROTATIONS else "N/m"
+        lines.append(
+            f"  {axis} at most {sizes[k, h]:.4g} {unit}, at {table.frequency[k]:.3g} rad/s and "
+            f"{np.degrees(table.heading[h]):.0f} deg"
+        )
+    return lines
+
+
+def _draught(path: Path, options: HydrodynamicsOptions) -> float:
+    if options.draught is None:
+        raise BadInput(f"{path}: --draught is required for a mesh and for coefficients")
+    return options.draught
+
+
 def _from_output(path: Path, options: HydrodynamicsOptions) -> Coefficients:
-    scale = OutputScale(options.scale, options.density, options.depth, options.draught)
+    draught = _draught(path, options)
+    scale = OutputScale(options.scale, options.density, options.depth, draught)
     if path.suffix == ".1":
         return read_wamit(path, scale)
     if path.is_dir() or path.name == RADIATION:
         return read_nemoh(path, scale)
     kinds = ", ".join(computation.MESHES)
     raise BadInput(
-        f"{path}: allowed are a mesh ({kinds}), WAMIT's NAME.1 and Nemoh's {RADIATION} or its "
-        "folder"
+        f"{path}: allowed are a mesh ({kinds}), WAMIT's NAME.1, Nemoh's {RADIATION} or its "
+        f"folder, and tables of response amplitude operators ({', '.join(OPERATORS)})"
     )
 
 
 def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients, list[str]]:
     hull = computation.HullMesh(
         path,
-        options.draught,
+        _draught(path, options),
         options.origin,
         options.scale,
         options.density,
@@ -203,4 +314,11 @@ def _summary(found: Coefficients) -> list[str]:
             f"mean drift: {escape_for_terminal(found.drift_of)}",
             f"  {_largest_drift(found, found.drift)}",
         ]
+    if found.drift_pairs is not None:
+        pairs = found.drift_pairs
+        lines.append(
+            f"slow drift of pairs of waves: {len(pairs.frequency)} frequencies from "
+            f"{pairs.frequency[0]:.3g} to {pairs.frequency[-1]:.3g} rad/s, "
+            f"{len(pairs.heading)} headings"
+        )
     return lines

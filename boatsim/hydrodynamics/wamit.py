@@ -1,6 +1,7 @@
 """Coefficients from the output files of WAMIT.
 
-They are NAME.1, NAME.3 or NAME.2, and where they exist NAME.hst and NAME.8 or NAME.9.
+They are NAME.1, NAME.3 or NAME.2, and where they exist NAME.hst, NAME.8 or NAME.9, and NAME.12d or
+NAME.11d. Response amplitude operators are NAME.2, NAME.3 or NAME.4 alone.
 """
 
 from dataclasses import dataclass
@@ -12,12 +13,15 @@ from boatsim.errors import BadInput
 from boatsim.hydrodynamics.axes import SIGNS, excitation_to_sname, to_sname
 from boatsim.hydrodynamics.headings import on_starboard_side
 from boatsim.hydrodynamics.mean_drift import DRIFT_AXES
+from boatsim.hydrodynamics.rao_table import RaoTable, complete_table
+from boatsim.hydrodynamics.wamit_pairs import pairs_next_to, wamit_pairs
 from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array
 
 COLUMNS = 5  # of NAME.1: period, row, column, added mass, damping; the last only of finite periods
+RAO_COLUMNS = 7  # of NAME.2 to .4: period, direction, axis, modulus, phase, real, imaginary part
 DRIFT_COLUMNS = 8  # of NAME.8: period, two directions, axis, modulus, phase, real, imaginary part
 SAME_DIRECTION = 1e-3  # [deg] between directions that are the same
 
@@ -81,6 +85,9 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         infinite = to_sname(np.nan_to_num(infinite))
     heading, excitation = _read_excitation(path, frequency, scale)
     drift, drift_of = _read_drift(path, frequency, heading, scale)
+    pairs, file = None, pairs_next_to(path)
+    if file is not None:
+        pairs = wamit_pairs(_read_numbers(file), file, scale.density, scale.length)
     return Coefficients(
         source=f"WAMIT, {path.name}",
         density=scale.density,
@@ -97,6 +104,7 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         excitation=excitation,
         drift=drift,
         drift_of=drift_of,
+        drift_pairs=pairs,
     )
 
 
@@ -142,6 +150,55 @@ def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[
     excitation = np.stack([table[angle] for angle in heading], axis=1)
     return on_starboard_side(
         np.radians(-heading), excitation_to_sname(excitation, conjugate=False), file
+    )
+
+
+def read_wamit_operators(path: Path, scale: OutputScale, origin: float) -> RaoTable:
+    """Read the response amplitude operators of WAMIT.
+
+    Motions are those of the origin of the body's axes; a rotation is dimensionless with the unit of
+    length. Loads are dimensionless with density, gravity and powers of the unit of length.
+
+    Args:
+        path: NAME.4, motions, or NAME.2 or NAME.3, loads.
+        scale: Dimensions that the file does not contain.
+        origin: Place of the vessel's origin of motion along x of the body's axes [m].
+
+    Raises:
+        BadInput: The file has another form.
+    """
+    waves, rows = [], []
+    motion = path.suffix == ".4"
+    found: dict[tuple[float, float], list[complex]] = {}
+    for row in _read_numbers(path):
+        if len(row) < RAO_COLUMNS:
+            raise BadInput(f"{path}: a row has {len(row)} columns; {RAO_COLUMNS} are required")
+        i = int(row[2]) - 1
+        if not 0 <= i < 6:
+            raise BadInput(f"{path}: motion {i + 1}; only one body of six is read")
+        if row[0] <= 0.0 or not np.isfinite(row[0]):
+            continue  # the limits of frequency zero and infinity
+        values = found.setdefault((row[0], row[1]), [complex(np.nan)] * 6)
+        size = scale.density * GRAVITY * scale.length ** (2 + (i > 2))
+        if motion:
+            size = scale.length ** -float(i > 2)
+        values[i] = (row[5] + 1j * row[6]) * size
+    for (period, direction), values in found.items():
+        turned = (np.radians(-direction) + np.pi + 1e-9) % (2.0 * np.pi) - np.pi - 1e-9
+        waves.append((2.0 * np.pi / period, turned))
+        rows.append(values)
+    if not rows:
+        raise BadInput(f"{path}: there is no period above 0")
+    sname = excitation_to_sname(np.array(rows), conjugate=False)
+    frequency, heading, complete = complete_table(np.array(waves), sname.astype(complex), path)
+    return RaoTable(
+        source=f"WAMIT, {path.name}",
+        kind="motion" if motion else "load",
+        frequency=frequency,
+        heading=heading,
+        values=complete,
+        depth=scale.depth,
+        point=(-origin, 0.0),
     )
 
 

@@ -29,7 +29,10 @@ MOST_FITS = 40  # 400 periods: a roll damped by 1 % of the critical damping has 
 # the response by its square, 0.25 %
 SPRING_SHARE = 0.05
 # What regular waves state themselves, of the parameters of a sea
-STATED = ("spectrum", "significant_height", "modal_period", "toward", "spreading", "gamma", "cut")
+STATED = (
+    *("spectrum", "spectrum_file", "significant_height", "modal_period", "toward", "spreading"),
+    *("gamma", "cut"),
+)
 SPRINGS = {"surge": "stiffness_north", "sway": "stiffness_east", "yaw": "turn"}
 COLUMNS = dict(zip(AXES, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
 
@@ -95,6 +98,7 @@ def wave_response(
         sea = {
             **table,
             "spectrum": "regular",
+            "spectrum_file": "",
             "significant_height": height,
             "modal_period": periods[k],
             "toward": directions[i],

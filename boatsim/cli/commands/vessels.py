@@ -10,7 +10,7 @@ import typer
 
 from boatsim.cli.application import app, exits_with_code
 from boatsim.cli.exits import print_lines
-from boatsim.cli.options import Content, Load, Trusted, parse_folder, split_loads
+from boatsim.cli.options import Content, Load, Trusted, parse_file, parse_folder, split_loads
 from boatsim.cli.trust_prompt import trusted_content
 
 
@@ -243,13 +243,19 @@ def hydrodynamics(
         Path,
         typer.Argument(
             metavar="HULL",
-            help="Mesh (.stl, .obj, .ply; z up, x forward), NAME.1 of WAMIT, or Nemoh's folder.",
+            help="Mesh (.stl, .obj, .ply; z up, x forward), NAME.1 of WAMIT, Nemoh's folder, or "
+            "response amplitude operators: .2, .3, .4 of WAMIT, .re1, .re8, .mat, .csv.",
         ),
     ],
     draught: Annotated[
-        float,
-        typer.Option(min=1e-3, max=100.0, metavar="M", help="Draught above the lowest point [m]."),
-    ],
+        float | None,
+        typer.Option(
+            min=1e-3,
+            max=100.0,
+            metavar="M",
+            help="Draught above the lowest point [m]; not for response amplitude operators.",
+        ),
+    ] = None,
     density: Annotated[
         float, typer.Option(min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3].")
     ] = 1025.0,
@@ -258,7 +264,9 @@ def hydrodynamics(
     ] = 0.0,
     origin: Annotated[
         float,
-        typer.Option(metavar="X", help="Origin of motion of the vessel along x of the mesh [m]."),
+        typer.Option(
+            metavar="X", help="Origin of motion of the vessel along x of the mesh or of WAMIT [m]."
+        ),
     ] = 0.0,
     scale: Annotated[
         float,
@@ -321,12 +329,28 @@ def hydrodynamics(
             help="Folder to write [default: hydrodynamics next to HULL].",
         ),
     ] = None,
+    vessel: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FOLDER|FILE", help="Vessel that moves as a table of motions states."
+        ),
+    ] = None,
+    load: Load = None,
+    speed: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=100.0, metavar="U", help="Forward speed of a table of operators [m/s]."
+        ),
+    ] = 0.0,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Compute hydrodynamic coefficients of a hull by Capytaine, or convert those of WAMIT or Nemoh.
 
     The effects radiation_memory and panel_wave_loads of a vessel read the folder. The mean drift is
     that of the freely floating hull, which depends on its mass centre and its gyradii. Needs
-    boatsim[bem] for a mesh.
+    boatsim[bem] for a mesh. Of response amplitude operators the folder has the loads that cause the
+    motions of --vessel, or those of the table.
     """
     from boatsim.cli.hydrodynamics import HydrodynamicsOptions, write_hydrodynamics
 
@@ -347,8 +371,59 @@ def hydrodynamics(
         roll_damping=roll_damping,
         compare=compare,
         out=out,
+        vessel=vessel,
+        loads=split_loads(load),
+        speed=speed,
     )
-    return write_hydrodynamics(hull, options)
+    names = [] if vessel is None else [vessel]
+    with trusted_content(content, trust, names):
+        return write_hydrodynamics(hull, options)
+
+
+@app.command()
+@exits_with_code
+def spectrum(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="SOURCE",
+            help="A table (.csv), a file of a buoy or wave model with --format, or a scenario.",
+        ),
+    ],
+    format_: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="Format of the file: ndbc, ndbc_ascii, swan, ncswan, ww3, ...",
+        ),
+    ] = None,
+    time: Annotated[
+        int, typer.Option(metavar="N", help="Number of the time in the file, from 0; -1: last.")
+    ] = 0,
+    site: Annotated[
+        int, typer.Option(metavar="N", help="Number of the site in the file, from 0.")
+    ] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            parser=parse_file,
+            help="File to write: .csv, or .nc, .swn (SWAN), .json of wavespectra.",
+        ),
+    ] = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Read a wave spectrum of a buoy, model or scenario, and write it to another file.
+
+    A sea with spectrum = "tabulated" and spectrum_file reads the .csv file. Formats of buoys and
+    models need boatsim[spectra].
+    """
+    from boatsim.cli.spectrum import convert_spectrum
+
+    with trusted_content(content, trust, [source]):
+        return convert_spectrum(source, format_, time, site, out)
 
 
 @app.command("list")

@@ -17,7 +17,7 @@ from numba import njit
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from boatsim.errors import BadInput
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.table import WaveLoads
 from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
@@ -28,17 +28,19 @@ FREQUENCIES, HEADINGS = 96, 25
 # Sign of a component in the mirror at the plane of symmetry of the hull
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 DRIFT_MIRROR = np.array([1.0, -1.0, -1.0])  # of surge, sway and yaw
+# Share of a step by which a frequency may exceed the last one: rounding of a text file
+EDGE = 0.01
 CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
 
 
 @lru_cache(maxsize=8)
-def excitation_grid(found: Coefficients, label: str) -> tuple[float, ...]:
+def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
     """Return the table of excitation and mean drift of a hull, as compiled laws read it.
 
     The mean drift is zero if it is not known.
 
     Args:
-        found: Coefficients with headings from 0 to pi.
+        found: Loads with headings from 0 to pi.
         label: Folder of the coefficients, for messages.
 
     Raises:
@@ -140,7 +142,7 @@ def grid_place(frequency: float, ahead: float, across: float, p: Array, first: A
     """
     count, headings = int(p[first + 2]), int(p[first + 3])
     along = max((frequency - p[first]) / p[first + 1], 0.0)
-    beyond = along > count - 1.0
+    beyond = along > count - 1.0 + EDGE
     along = min(along, count - 1.0)
     low = min(int(along), count - 2)
     side = 1.0
@@ -149,6 +151,17 @@ def grid_place(frequency: float, ahead: float, across: float, p: Array, first: A
     bearing = atan2(side * across, ahead) / pi * (headings - 1.0)
     left = min(int(bearing), headings - 2)
     return GridPlace(low, along - low, left, side, beyond), cubic_weights(bearing - left)
+
+
+@njit(inline="always")
+def end_of_grid(p: Array, first: Any) -> Any:
+    """Return the index after the table of excitation and mean drift.
+
+    Args:
+        p: Parameters and tables.
+        first: Index of the table.
+    """
+    return first + HEAD + int(p[first + 2]) * int(p[first + 3]) * (VALUES + DRIFTS)
 
 
 @njit

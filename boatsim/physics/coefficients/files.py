@@ -5,6 +5,10 @@
     excitation.csv      a row for each frequency and heading: force per amplitude of the wave
     memory.csv          sections of the model of the memory of the radiation force
     drift.csv           a row for each frequency and heading: mean drift
+    drift_pairs.csv     a row for each pair of frequencies and heading: slow drift
+
+A folder of wave loads alone, such as those of a table of motions, has no radiation.csv and
+memory.csv, and only source, conventions and depth in coefficients.toml.
 
 The units and axes are those of `table.Coefficients`.
 """
@@ -19,13 +23,15 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.files import read_toml, replace_file, toml_value
 from boatsim.physics.coefficients.memory_fit import SETS, MemoryModel
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.pair_files import NAME as PAIRS
+from boatsim.physics.coefficients.pair_files import read_drift_pairs, write_drift_pairs
+from boatsim.physics.coefficients.table import Coefficients, DriftPairs, WaveLoads
 from boatsim.physics.signals import AXES, Array
 
 HEADER = "coefficients.toml"
 RADIATION, EXCITATION = "radiation.csv", "excitation.csv"
 MEMORY, DRIFT = "memory.csv", "drift.csv"
-FILES = (HEADER, RADIATION, EXCITATION, MEMORY, DRIFT)
+FILES = (HEADER, RADIATION, EXCITATION, MEMORY, DRIFT, PAIRS)
 AXES_TEXT = "SNAME: x forward, y starboard, z down"
 PHASE_TEXT = (
     "force = amplitude Re(X exp(i omega t)) for the elevation amplitude "
@@ -112,10 +118,47 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
     if found.memory is not None:
         _write_table(folder / MEMORY, MEMORY_COLUMNS, _memory_rows(found.memory))
+    _write_drift(folder, found)
+
+
+def write_wave_loads(folder: Path, found: WaveLoads) -> None:
+    """Write wave loads alone to a folder, which is made if necessary.
+
+    Args:
+        folder: The folder.
+        found: The loads.
+
+    Raises:
+        BadInput: The folder contains the coefficients of a hull.
+    """
+    if (folder / RADIATION).is_file():
+        raise BadInput(
+            f"{folder}: contains the coefficients of a hull ({RADIATION}); choose another folder "
+            "with --out"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [
+        f"source = {toml_value(found.source)}",
+        f"axes = {toml_value(AXES_TEXT)}",
+        f"phase = {toml_value(PHASE_TEXT)}",
+        f"depth = {toml_value(found.depth)}  # [m] of the water; 0: deep water",
+    ]
+    with replace_file(folder / HEADER) as path:
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
+    _write_drift(folder, found)
+
+
+def _write_drift(folder: Path, found: Coefficients | WaveLoads) -> None:
+    """Write the drift, and remove that of earlier coefficients if there is none."""
     if found.drift is None:
-        (folder / DRIFT).unlink(missing_ok=True)  # of earlier coefficients
+        (folder / DRIFT).unlink(missing_ok=True)
     else:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
+    if found.drift_pairs is None:
+        (folder / PAIRS).unlink(missing_ok=True)
+    else:
+        write_drift_pairs(folder / PAIRS, found.drift_pairs)
 
 
 def _rounded(values: Array) -> list[float]:
@@ -128,7 +171,7 @@ def _radiation_rows(found: Coefficients) -> Iterable[Sequence[object]]:
             yield [frequency, axis, *found.added_mass[k, i], *found.damping[k, i]]
 
 
-def _excitation_rows(found: Coefficients) -> Iterable[Sequence[object]]:
+def _excitation_rows(found: Coefficients | WaveLoads) -> Iterable[Sequence[object]]:
     for k, frequency in enumerate(found.frequency):
         for h, heading in enumerate(found.heading):
             parts: list[float] = []
@@ -143,7 +186,7 @@ def _memory_rows(memory: MemoryModel) -> Iterable[Sequence[object]]:
             yield [name, *(f"{value:.{MODEL_DIGITS}g}" for value in one)]
 
 
-def _drift_rows(found: Coefficients, drift: Array) -> Iterable[Sequence[object]]:
+def _drift_rows(found: Coefficients | WaveLoads, drift: Array) -> Iterable[Sequence[object]]:
     for k, frequency in enumerate(found.frequency):
         for h, heading in enumerate(found.heading):
             yield [frequency, heading, *drift[k, h]]
@@ -173,10 +216,55 @@ def read_coefficients(folder: str | Path) -> Coefficients:
         BadInput: A file is missing, or a value is not what the format requires.
     """
     path = Path(folder)
+    return _read_coefficients(path.resolve(), _times_of_change(path))
+
+
+def read_wave_loads(folder: str | Path) -> WaveLoads:
+    """Read the wave loads of a folder, with or without other coefficients of the hull.
+
+    A second call returns the same object.
+
+    Args:
+        folder: The folder.
+
+    Raises:
+        BadInput: A file is missing, or a value is not what the format requires.
+    """
+    path = Path(folder)
+    return _read_wave_loads(path.resolve(), _times_of_change(path))
+
+
+def _times_of_change(path: Path) -> tuple[int, ...]:
+    """Return the times of change of all files of a folder, by which an edited one is read again."""
     if not (path / HEADER).is_file():
         raise BadInput(f"{path}: there is no {HEADER}; boatsim hydrodynamics writes such a folder")
-    times = tuple((path / name).stat().st_mtime_ns for name in FILES if (path / name).is_file())
-    return _read_coefficients(path.resolve(), times)
+    return tuple((path / name).stat().st_mtime_ns for name in FILES if (path / name).is_file())
+
+
+@lru_cache(maxsize=8)
+def _read_wave_loads(folder: Path, _: tuple[int, ...]) -> WaveLoads:
+    """Read the wave loads of a folder whose files have the given times of change."""
+    header = read_toml(folder / HEADER)
+    frequency, heading, excitation = _read_excitation(folder / EXCITATION)
+    drift = None
+    if (folder / DRIFT).is_file():
+        drift = _read_drift(folder / DRIFT, frequency, heading)
+    return WaveLoads(
+        source=str(header.get("source", "")),
+        depth=_number(header, "depth", folder / HEADER),
+        frequency=frequency,
+        heading=heading,
+        excitation=excitation,
+        drift=drift,
+        drift_pairs=_read_pairs(folder),
+    )
+
+
+def _read_pairs(folder: Path) -> DriftPairs | None:
+    """Read the slow drift of pairs of waves, None without its file."""
+    if not (folder / PAIRS).is_file():
+        return None
+    return read_drift_pairs(folder / PAIRS)
 
 
 @lru_cache(maxsize=8)
@@ -185,7 +273,9 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
     header = read_toml(folder / HEADER)
     label = folder / HEADER
     frequency, added_mass, damping = _read_radiation(folder / RADIATION)
-    heading, excitation = _read_excitation(folder / EXCITATION, frequency)
+    waves, heading, excitation = _read_excitation(folder / EXCITATION)
+    if len(waves) != len(frequency) or not np.allclose(waves, frequency):
+        raise BadInput(f"{folder / EXCITATION}: the frequencies differ from those of {RADIATION}")
     memory = None
     if (folder / MEMORY).is_file():
         memory = _read_memory(folder / MEMORY, header.get("memory_error", [0.0, 0.0]), label)
@@ -209,6 +299,7 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
         memory=memory,
         drift=drift,
         drift_of=str(header.get("drift_of", "")),
+        drift_pairs=_read_pairs(folder),
     )
 
 
@@ -279,19 +370,22 @@ def _increasing(values: Array, path: Path) -> Array:
     return values
 
 
-def _read_excitation(path: Path, frequency: Array) -> tuple[Array, Array]:
+def _read_excitation(path: Path) -> tuple[Array, Array, Array]:
+    """Return frequencies (N,), headings (H,) and excitation (N, H, 6)."""
     rows = _numbers(_read_table(path, EXCITATION_COLUMNS), 0, path)
-    count = len(frequency)
-    headings = len(rows) // count
-    if headings == 0 or len(rows) != headings * count:
-        raise BadInput(f"{path}: every frequency of {RADIATION} needs the same headings")
-    table = rows.reshape(count, headings, -1)
-    heading = table[0, :, 1]
+    if len(rows) == 0:
+        raise BadInput(f"{path}: there are no rows")
+    headings = int(np.argmax(np.append(rows[:, 0] != rows[0, 0], True)))
+    if len(rows) % headings:
+        raise BadInput(f"{path}: every frequency needs the same headings")
+    table = rows.reshape(-1, headings, rows.shape[1])
+    heading, frequency = table[0, :, 1], table[:, 0, 0]
     if not np.allclose(table[:, :, 0], frequency[:, None]):
-        raise BadInput(f"{path}: the frequencies differ from those of {RADIATION}")
+        raise BadInput(f"{path}: every frequency needs the same headings")
     if not np.allclose(table[:, :, 1], heading) or not np.all(np.diff(heading) > 0.0):
         raise BadInput(f"{path}: headings must increase and be the same at every frequency")
-    return heading, table[:, :, 2::2] + 1j * table[:, :, 3::2]
+    excitation = table[:, :, 2::2] + 1j * table[:, :, 3::2]
+    return _increasing(frequency, path), heading, excitation
 
 
 def _read_drift(path: Path, frequency: Array, heading: Array) -> Array:

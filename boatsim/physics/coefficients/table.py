@@ -7,8 +7,52 @@ positive upward, and its excitation is Re(X exp(i w t)) a.
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from boatsim.physics.coefficients.memory_fit import MemoryModel
 from boatsim.physics.signals import Array
+
+
+@dataclass(frozen=True, eq=False)
+class DriftPairs:
+    """Slow drift of pairs of waves of one direction: quadratic transfer functions.
+
+    Attributes:
+        frequency: Angular frequencies (M,) [rad/s], increasing.
+        heading: Directions to which the waves run (H,) [rad], from 0 to pi, clockwise from x.
+        values: Complex force and moment (M, M, H, 6) per product of both amplitudes, for the time
+            dependence exp(i (w_1 - w_2) t); the conjugate if the waves are exchanged [N/m^2, N/m].
+    """
+
+    frequency: Array
+    heading: Array
+    values: NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class WaveLoads:
+    """Loads of waves on a hull over frequency and heading, about its reference point.
+
+    Attributes:
+        source: Program and file, in words.
+        depth: Depth of the water [m]; 0 for deep water.
+        frequency: Angular frequencies of the waves (N,) [rad/s], increasing.
+        heading: Directions (H,) to which waves run [rad], from 0 to pi, clockwise from x. Waves of
+            pi come from ahead.
+        excitation: Complex excitation (N, H, 6) [N/m, N].
+        drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
+            amplitude [N/m^2, N/m]; None if it is not known.
+        drift_pairs: Slow drift of pairs of waves; None if it is not known.
+    """
+
+    source: str
+    depth: float
+    frequency: Array
+    heading: Array
+    excitation: Array
+    drift: Array | None = None
+    drift_pairs: DriftPairs | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +79,7 @@ class Coefficients:
         drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
             amplitude [N/m^2, N/m]; None if it is not known.
         drift_of: Hull that drifts, in words: its mass and gyradii.
+        drift_pairs: Slow drift of pairs of waves; None if it is not known.
     """
 
     source: str
@@ -53,3 +98,4 @@ class Coefficients:
     memory: MemoryModel | None = None
     drift: Array | None = None
     drift_of: str = ""
+    drift_pairs: DriftPairs | None = None

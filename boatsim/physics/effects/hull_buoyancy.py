@@ -122,7 +122,7 @@ class HullBuoyancy(SeaParameters, Force):
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, chapter 2"
     )
     sees_table: ClassVar[bool] = True
-    paths: ClassVar = ("mesh",)
+    paths: ClassVar = ("mesh", "spectrum_file")
     law: ClassVar = law
 
     mesh: str = field(default="")  # STL or OBJ file of the closed hull

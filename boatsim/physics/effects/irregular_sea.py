@@ -8,13 +8,18 @@ import numpy as np
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.waves.dispersion import pressure_attenuation, wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.field import WaveField
 from boatsim.physics.waves.hull_integrals import beam_attenuation, wave_slope_integrals
 from boatsim.physics.waves.sea_parameters import SeaParameters
-from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
+from boatsim.physics.waves.sea_state import (
+    has_directions,
+    sea_state,
+    wave_component,
+    wave_direction,
+)
 
 GRAVITY = particulars.GRAVITY
 
@@ -41,7 +46,7 @@ def heading_of_encounter(bearing: float, m: Any, q: Any) -> tuple[float, float, 
 
 
 @njit
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     """Return the force of an irregular sea in sway, yaw and roll.
 
     It is a sum over wave components. The waves travel on the water, which moves with the current:
@@ -50,6 +55,8 @@ def law(m: Any, q: Any) -> Wrench:
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
         q: Parameters of the effect, with the names and units of its class.
+        p: Parameters and tables of all effects.
+        first: Index of the effect's table.
 
     Returns:
         Force [N] and moment [N m] in body axes.
@@ -61,11 +68,11 @@ def law(m: Any, q: Any) -> Wrench:
     half = 0.5 * q.length
     # of water, per length of hull [N]
     weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
-    sea = sea_state(q)
+    sea = sea_state(q, p, first)
     for k in range(int(sea.number)):
-        w, amplitude, phase = wave_component(k, q, sea)
-        if q.spreading > 0.0:
-            ahead, across, run = heading_of_encounter(wave_direction(k, q), m, q)
+        w, amplitude, phase = wave_component(k, q, sea, p, first)
+        if has_directions(q):
+            ahead, across, run = heading_of_encounter(wave_direction(k, q, p, first), m, q)
         number = wave_number(w, q.depth)
         slope = number * amplitude * across
         theta = w * m.t - number * run + phase
@@ -100,10 +107,11 @@ class IrregularSea(SeaParameters, Force):
     `spectrum` is "bretschneider" (by height and period), "pierson_moskowitz" (a fully developed
     sea, whose period follows from the height), "jonswap" (with the peak enhancement `gamma`),
     "torsethaugen" (wind sea and swell of the open ocean) or "regular": one wave of
-    `significant_height` from trough to crest, with its crest at the origin at t = 0. The
-    realisation and the seed of the scenario give the frequencies inside their cells and the phases,
-    with `spreading` the directions, and with `random_amplitudes` = 1 the amplitudes. Each component
-    has one direction.
+    `significant_height` from trough to crest, with its crest at the origin at t = 0. With
+    "tabulated" it is that of the file `spectrum_file`, whose height holds if none is given, and
+    whose directions are turned by `toward`. The realisation and the seed of the scenario give the
+    frequencies inside their cells and the phases, with `spreading` the directions, and with
+    `random_amplitudes` = 1 the amplitudes. Each component has one direction.
 
     The spectrum ends at `cut`, by default at four times the modal frequency, and that of
     Torsethaugen where 0.5 % of the energy lies above; a cut above which more than 2 % of the energy
@@ -161,6 +169,7 @@ class IrregularSea(SeaParameters, Force):
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
     )
+    sees_table: ClassVar[bool] = True
     law: ClassVar = law
 
     course_kept: float = param(
@@ -256,6 +265,10 @@ class IrregularSea(SeaParameters, Force):
             `centre_depth`, 0.4 of the draught, and `roll_depth`, the draught [m].
         """
         return {"centre_depth": 0.4 * self.draught, "roll_depth": self.draught}
+
+    def table(self) -> tuple[float, ...]:
+        """Return the table of a tabulated sea."""
+        return self.sea_table()
 
     def wave_axes(self) -> tuple[str, ...]:
         """Return the degrees of freedom in which the sea exerts a force; empty if it is calm.

@@ -17,13 +17,19 @@ from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.encounter import heading_of_waves
 from boatsim.physics.waves.hull_strips import (
     NO_SECTIONS,
+    end_of_sections,
     line_value,
     section_table,
     strip_hull,
     strip_place,
 )
 from boatsim.physics.waves.sea_parameters import SeaParameters
-from boatsim.physics.waves.sea_state import sea_state, wave_component, wave_direction
+from boatsim.physics.waves.sea_state import (
+    has_directions,
+    sea_state,
+    wave_component,
+    wave_direction,
+)
 from boatsim.physics.waves.strip_loads import EncounteredWave, wave_loads
 
 GRAVITY = particulars.GRAVITY
@@ -49,12 +55,13 @@ def law(m: Any, q: Any, p: Array, first: Any) -> Wrench:
     X = Y = Z = K = M = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
-    hull, sea = strip_hull(q), sea_state(q)
+    waves = end_of_sections(p, first)
+    hull, sea = strip_hull(q), sea_state(q, p, waves)
     ahead, across, run = heading_of_waves(q.toward, m)
     for k in range(int(sea.number)):
-        w, amplitude, phase = wave_component(k, q, sea)
-        if q.spreading > 0.0:
-            ahead, across, run = heading_of_waves(wave_direction(k, q), m)
+        w, amplitude, phase = wave_component(k, q, sea, p, waves)
+        if has_directions(q):
+            ahead, across, run = heading_of_waves(wave_direction(k, q, p, waves), m)
         number = wave_number(w, q.depth)
         # Components have a trough at phase 0
         here = w * m.t - number * run + phase + pi
@@ -166,7 +173,7 @@ class StripWaveLoads(SeaParameters, Force):
         "N. Salvesen, E. O. Tuck, O. M. Faltinsen, Ship Motions and Sea Loads, SNAME 78, 1970"
     )
     sees_table: ClassVar[bool] = True
-    paths: ClassVar = ("mesh",)
+    paths: ClassVar = ("mesh", "spectrum_file")
     law: ClassVar = law
 
     mesh: str = field(default="")  # STL or OBJ file of the closed hull, in place of particulars
@@ -297,11 +304,12 @@ class StripWaveLoads(SeaParameters, Force):
         return own
 
     def table(self) -> tuple[float, ...]:
-        """Return breadth and area of the sections of the mesh, as the law reads them."""
-        if not self.mesh:
-            return NO_SECTIONS
-        sections = self.sections()
-        return section_table(sections.breadth.tolist(), sections.area.tolist())
+        """Return breadth and area of the sections of the mesh, then the table of the sea."""
+        table: tuple[float, ...] = NO_SECTIONS
+        if self.mesh:
+            sections = self.sections()
+            table = section_table(sections.breadth.tolist(), sections.area.tolist())
+        return (*table, *self.sea_table())
 
     def sections(self) -> HullSections:
         """Return the sections of the mesh.

@@ -131,6 +131,17 @@ def section_table(breadth: Sequence[float], area: Sequence[float]) -> tuple[floa
 
 
 @njit(inline="always")
+def end_of_sections(p: Array, first: Any) -> Any:
+    """Return the index after the table of sections.
+
+    Args:
+        p: Parameters and tables of all effects.
+        first: Index of the table of sections.
+    """
+    return first + 1 + 2 * int(p[first])
+
+
+@njit(inline="always")
 def strip_section(
     i: int, place: float, hull: StripHull, p: Array, first: Any
 ) -> tuple[float, float]:

@@ -1,9 +1,10 @@
 """The components of a sea state: frequency, amplitude, phase and direction of each wave.
 
-Compiled laws compute them from the numbers of a sea, so that no vessel stores a table of waves.
+Compiled laws compute them from the numbers of a sea, so that no vessel stores a table of waves. A
+tabulated sea has its cells in a table, `tabulated.spectrum_table`, and the same random numbers.
 """
 
-from math import exp, log, pi, sqrt
+from math import atan2, exp, log, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +23,13 @@ from boatsim.physics.waves.spectra import (
 )
 from boatsim.physics.waves.spreading import random_direction
 
-SPECTRA = ("bretschneider", "pierson_moskowitz", "jonswap", "torsethaugen", "regular")
+FORMULAS = ("bretschneider", "pierson_moskowitz", "jonswap", "torsethaugen", "regular")
+SPECTRA = (*FORMULAS, "tabulated")
 # place of each spectrum in SPECTRA, by which compiled laws know it
 BRETSCHNEIDER, PIERSON_MOSKOWITZ, JONSWAP, TORSETHAUGEN, REGULAR = map(float, range(5))
+TABULATED = 5.0
+CELLS = 4  # numbers of a tabulated sea before its cells
+NO_TABLE = np.zeros(1)  # of a sea that is not tabulated
 LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
 HIGHEST = 4.0  # default cut over the modal frequency; 0.5 % of the energy lies above
 LOST_TAIL = 0.005  # the same share of the two-peak spectrum, whose tail falls by w^-4
@@ -94,13 +99,17 @@ def two_peak_sea(q: Any, modal: float) -> SeaState:
 
 
 @njit
-def sea_state(q: Any) -> SeaState:
+def sea_state(q: Any, p: Array, at: Any) -> SeaState:
     """Return the numbers that all components of a sea have in common.
 
     Args:
         q: Parameters of the effect, with a significant height above zero.
+        p: Parameters and tables of all effects.
+        at: Index of the table of a tabulated sea.
     """
     modal = 2.0 * pi / q.modal_period
+    if q.spectrum_code == TABULATED:
+        return SeaState(p[at], p[at + 1], p[at + 2], modal, q.significant_height, 1.0, 0.0, modal)
     if q.spectrum_code == PIERSON_MOSKOWITZ:
         modal = fully_developed_frequency(q.significant_height)
     if q.spectrum_code == REGULAR:
@@ -131,16 +140,21 @@ def spectral_density(frequency: Any, q: Any, sea: SeaState) -> Any:
 
 
 @njit(forceinline=True)
-def cell_share(k: int, q: Any, sea: SeaState) -> float:
+def cell_share(k: int, q: Any, sea: SeaState, p: Array, at: Any) -> float:
     """Return the share of the energy of a sea that lies in one cell of frequencies.
 
-    That of Bretschneider's spectrum is exact, others have the density in the middle of the cell.
+    That of Bretschneider's spectrum and of a table is exact, others have the density in the middle
+    of the cell.
 
     Args:
         k: Number of the cell, from 0.
         q: Parameters of the effect.
         sea: Common numbers of the components.
+        p: Parameters and tables of all effects.
+        at: Index of the table of a tabulated sea.
     """
+    if q.spectrum_code == TABULATED:
+        return float(p[at + CELLS + k * (int(p[at + 3]) + 2)])
     if q.spectrum_code <= PIERSON_MOSKOWITZ:
         below = 0.0  # share of the energy below the cell
         if k > 0:
@@ -152,7 +166,7 @@ def cell_share(k: int, q: Any, sea: SeaState) -> float:
 
 
 @njit(forceinline=True)
-def wave_component(k: int, q: Any, sea: SeaState) -> tuple[float, float, float]:
+def wave_component(k: int, q: Any, sea: SeaState, p: Array, at: Any) -> tuple[float, float, float]:
     """Return frequency [rad/s], amplitude [m] and phase [rad] of one wave of the sea.
 
     Each of the cells of equal width in frequency has one wave, at a random frequency inside the
@@ -165,10 +179,12 @@ def wave_component(k: int, q: Any, sea: SeaState) -> tuple[float, float, float]:
         k: Number of the wave, from 0.
         q: Parameters of the effect.
         sea: Common numbers of the components.
+        p: Parameters and tables of all effects.
+        at: Index of the table of a tabulated sea.
     """
     if q.spectrum_code == REGULAR:
         return sea.modal_frequency, 0.5 * q.significant_height, pi
-    amplitude = q.significant_height * sqrt(cell_share(k, q, sea) / 8.0)
+    amplitude = q.significant_height * sqrt(cell_share(k, q, sea, p, at) / 8.0)
     if q.random_amplitudes != 0.0:
         amplitude *= sqrt(-log(1.0 - uniform_random(q.realisation, AMPLITUDES + k)))
     return (
@@ -178,34 +194,73 @@ def wave_component(k: int, q: Any, sea: SeaState) -> tuple[float, float, float]:
     )
 
 
+@njit(inline="always")
+def has_directions(q: Any) -> Any:
+    """Return whether each wave of a sea has a direction of its own.
+
+    Args:
+        q: Parameters of the effect.
+    """
+    return q.spreading > 0.0 or q.spectrum_code == TABULATED
+
+
 @njit
-def wave_direction(k: int, q: Any) -> float:
+def tabulated_direction(k: int, q: Any, p: Array, at: Any) -> float:
+    """Return the direction to which one wave of a tabulated sea runs [rad].
+
+    The table has the directions below which the share sin^2(pi j / 2 n) of the energy lies, so that
+    both ends of the distribution are fine too; in between they are linear in j.
+
+    Args:
+        k: Number of the wave, from 0.
+        q: Parameters of the effect.
+        p: Parameters and tables of all effects.
+        at: Index of the table of the sea.
+    """
+    shares = int(p[at + 3])
+    below = uniform_random(q.realisation, DIRECTIONS + 2 * k)
+    place = 2.0 / pi * atan2(sqrt(below), sqrt(1.0 - below)) * shares
+    low = min(int(place), shares - 1)
+    row = at + CELLS + k * (shares + 2) + 1 + low
+    return float(p[row] + (place - low) * (p[row + 1] - p[row]))
+
+
+@njit
+def wave_direction(k: int, q: Any, p: Array, at: Any) -> float:
     """Return the direction to which one wave of the sea runs [rad].
 
     Args:
         k: Number of the wave, from 0.
         q: Parameters of the effect.
+        p: Parameters and tables of all effects.
+        at: Index of the table of a tabulated sea.
     """
+    toward = float(q.toward)
+    if q.spectrum_code == TABULATED:
+        toward += tabulated_direction(k, q, p, at)
     if q.spreading <= 0.0:
-        return float(q.toward)
+        return toward
     first = uniform_random(q.realisation, DIRECTIONS + 2 * k)
     second = uniform_random(q.realisation, DIRECTIONS + 2 * k + 1)
-    return float(q.toward + random_direction(first, second, q.spreading))
+    return float(toward + random_direction(first, second, q.spreading))
 
 
-def components(q: Any) -> Array:
+def components(q: Any, table: Array = NO_TABLE) -> Array:
     """Return all waves of a sea as an array.
 
     Args:
         q: Parameters of the effect, with a significant height above zero.
+        table: Table of a tabulated sea.
 
     Returns:
         Frequency [rad/s], amplitude [m], phase [rad] and direction [rad] of each wave (N, 4).
     """
     with np.errstate(over="ignore"):  # the random numbers are integers modulo 2^64
-        sea = interpreted(sea_state)(q)
+        sea = interpreted(sea_state)(q, table, 0)
         wave, direction = interpreted(wave_component), interpreted(wave_direction)
-        rows = [(*wave(k, q, sea), direction(k, q)) for k in range(int(sea.number))]
+        rows = []
+        for k in range(int(sea.number)):
+            rows.append((*wave(k, q, sea, table, 0), direction(k, q, table, 0)))
     return np.array(rows)
 
 
@@ -213,12 +268,12 @@ def energy_above(q: Any) -> tuple[Array, Array]:
     """Return the share of the energy of a sea that lies above each of many frequencies.
 
     Args:
-        q: Parameters of the effect, of a sea that is not regular and has a height.
+        q: Parameters of the effect, of a sea with a formula and a height.
 
     Returns:
         Frequencies (N,) [rad/s], increasing, and shares (N,) [-], decreasing to about 0.
     """
-    sea = interpreted(sea_state)(q)
+    sea = interpreted(sea_state)(q, NO_TABLE, 0)
     lowest = LOWEST * min(sea.modal_frequency, sea.secondary_frequency)
     frequency = lowest * np.geomspace(1.0, WIDEST, FINE)
     density = interpreted(spectral_density)(frequency, q, sea)

@@ -51,8 +51,8 @@ def sea(**more: float) -> IrregularSea:
 
 def ensemble(effect: Any, t: float = 0.0) -> Array:
     """(SEEDS, 6) wrenches at one time, over `AXES`."""
-    law, m = type(effect).law, make_motion(t=t)
-    return np.array([law(m, effect.with_seed(seed).values()) for seed in range(SEEDS)])
+    m = make_motion(t=t)
+    return np.array([effect.with_seed(seed).wrench(m) for seed in range(SEEDS)])
 
 
 # ---- waves

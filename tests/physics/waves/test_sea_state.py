@@ -21,11 +21,11 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.physics.vessel.wave_field import wave_field
 from boatsim.physics.waves.field import WaveField
-from boatsim.physics.waves.sea_state import SPECTRA, components
+from boatsim.physics.waves.sea_state import FORMULAS, components
 from boatsim.simulate.batch import Batch
 
 G = 9.81
-IRREGULAR = [name for name in SPECTRA if name != "regular"]
+IRREGULAR = [name for name in FORMULAS if name != "regular"]
 SWAY, ROLL = AXES.index("sway"), AXES.index("roll")
 # of a hull by which effects without a vessel are completed
 HULL = {"length": 1.2, "beam": 0.4, "draught": 0.1, "mass": 5.0, "stiffness": 20.0, "arm": 0.0}
@@ -217,7 +217,7 @@ def test_two_seas_of_a_vessel_add_up() -> None:
 # ---- the compiled program, runs and logs
 
 
-@pytest.mark.parametrize("spectrum", SPECTRA)
+@pytest.mark.parametrize("spectrum", FORMULAS)
 def test_the_c_library_gives_the_forces_of_the_law(spectrum: str) -> None:
     boat = beam_sea_boat(spectrum=spectrum, spreading=3.0, depth=2.0, random_amplitudes=1.0)
     own = boat.effect("irregular_sea")
