@@ -19,6 +19,9 @@ from boatsim.simulate.run_log import SENSED
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.sensing import Sensor, Sensors
 from boatsim.simulate.sensors.compass import COMPENSATIONS, Compass
+from boatsim.simulate.sensors.dvl import Dvl
+from boatsim.simulate.sensors.gnss import Gnss
+from boatsim.simulate.sensors.imu import Imu
 
 # Readings in the order of the C source: fields of `Sense` after t, then those of further sensors
 READINGS = ("psi", "r", "ax", "ay", "u", "v", "x", "y", "phi", "p", "q", "az", "fix_age_s")
@@ -27,7 +30,8 @@ WITH_SPEED_LOG = ("u",)
 WITH_POSITION_FIX = ("x", "y")
 IDEAL = (*ALWAYS, *WITH_SPEED_LOG, *WITH_POSITION_FIX)
 STANDARD = "sensors"  # name of the standard sensors, as in a scenario
-ADDITIONAL = ("imu", "compass", "dvl", "gnss")  # sensors that the C source has
+# Sensors that the C source has
+ADDITIONAL: Mapping[str, type[Sensor]] = {"imu": Imu, "compass": Compass, "dvl": Dvl, "gnss": Gnss}
 # Parameters that set the size of an array in the C source
 CONSTANT = ("rate", "latency")
 SEED = "sensors.seed"
@@ -61,17 +65,21 @@ class SensorSuite:
             scenario: The scenario.
 
         Raises:
-            BadInput: An FMU cannot have one of the sensors.
+            BadInput: An FMU cannot have one of the sensors, or the seed.
         """
         additional: dict[str, Sensor] = {}
         for sensor in scenario.additional_sensors:
             name = snake_case(type(sensor).__name__)
-            if name not in ADDITIONAL:
+            if ADDITIONAL.get(name) is not type(sensor):
                 raise BadInput(
                     f"{scenario.name}: an FMU takes no sensor {name!r}; allowed are "
                     f"{', '.join(ADDITIONAL)}"
                 )
             additional[name] = sensor
+        if scenario.file.seed > LARGEST_SEED:
+            raise BadInput(
+                f"{scenario.name}: seed = {scenario.file.seed}; an FMU takes 0 to {LARGEST_SEED:.0f}"
+            )
         period = scenario.controller.period
         return cls(scenario.sensors, additional, period, scenario.file.seed)
 
