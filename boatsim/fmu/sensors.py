@@ -78,7 +78,8 @@ class SensorSuite:
             additional[name] = sensor
         if scenario.file.seed > LARGEST_SEED:
             raise BadInput(
-                f"{scenario.name}: seed = {scenario.file.seed}; an FMU takes 0 to {LARGEST_SEED:.0f}"
+                f"{scenario.name}: seed = {scenario.file.seed}; an FMU takes 0 to "
+                f"{LARGEST_SEED:.0f}"
             )
         period = scenario.controller.period
         return cls(scenario.sensors, additional, period, scenario.file.seed)

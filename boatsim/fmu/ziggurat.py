@@ -3,8 +3,8 @@
 G. Marsaglia and W. W. Tsang, The Ziggurat Method for Generating Random Variables, Journal of
 Statistical Software 5 (8), 2000. The area under a density is covered by 256 layers of equal area,
 the lowest of which contains the tail beyond a radius r. The radii, the number of layers and the
-bits of a number are those of NumPy's generator. NumPy's tables have rounding errors of their own, so
-that a normal number differs from NumPy's by up to 4e-15; exponential ones are the same.
+bits of a number are those of NumPy's generator. NumPy's tables have rounding errors of their own,
+so that a normal number differs from NumPy's by up to 4e-15; exponential ones are the same.
 """
 
 from collections.abc import Callable
