@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 from boatsim.cli import comparing, progress
 from boatsim.cli.exits import FAULTS, Exit, one_line, print_error, print_lines, print_note
+from boatsim.cli.fast_start import keep_arrow_from_importing_pandas
 from boatsim.cli.metric_table import print_metrics
-from boatsim.cli.without_pandas import keep_arrow_from_importing_pandas
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
 from boatsim.physics import trust
