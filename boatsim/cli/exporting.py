@@ -4,11 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.api import read
+from boatsim.api import load_scenario, read
 from boatsim.cli.exits import print_lines, print_notes
 from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.fmu.archive import SUFFIX as FMU_SUFFIX
 from boatsim.fmu.archive import write_fmu
+from boatsim.fmu.sensors import SensorSuite
 from boatsim.fmu.surroundings import added_surroundings
 from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.exporting.mcap import SUFFIX as MCAP_SUFFIX
@@ -43,7 +44,14 @@ def export_recording(path: Path, out: Path | None, vessel: str | None, load: Seq
     return 0
 
 
-def export_vessel(name: str, out: Path | None, fmi: str, step: float, load: Sequence[str]) -> int:
+def export_vessel(
+    name: str,
+    out: Path | None,
+    fmi: str,
+    step: float,
+    load: Sequence[str],
+    sensors: str | None = None,
+) -> int:
     """Write a vessel to an FMU.
 
     Args:
@@ -52,17 +60,22 @@ def export_vessel(name: str, out: Path | None, fmi: str, step: float, load: Sequ
         fmi: Version of FMI, "3" or "2".
         step: Integration step [s].
         load: Load conditions.
+        sensors: Scenario with the sensors of the vessel, by name or path; None for no sensors.
 
     Returns:
         Exit code.
 
     Raises:
-        BadInput: If the vessel cannot be read, or there is no C compiler.
+        BadInput: If the vessel or the scenario cannot be read, an FMU cannot have one of the
+            sensors, or there is no C compiler.
     """
     vessel = load_vessel(name, load)
+    suite = None
+    if sensors is not None:
+        suite = SensorSuite.from_scenario(load_scenario(sensors))
     if out is None:
         out = Path("out") / f"{vessel.name}{FMU_SUFFIX}"
-    variables = write_fmu(vessel, out, fmi, step)
+    variables = write_fmu(vessel, out, fmi, step, suite)
     counts = Counter(variable.causality for variable in variables)
     print_notes(added_surroundings(vessel))
     print_lines(

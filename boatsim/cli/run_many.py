@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from boatsim.cli import comparing, progress
 from boatsim.cli.exits import FAULTS, Exit, one_line, print_error, print_lines, print_note
+from boatsim.cli.fast_start import keep_arrow_from_importing_pandas
 from boatsim.cli.metric_table import print_metrics
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored_signals, signal_received
@@ -218,6 +219,8 @@ def run_manoeuvre(scenario: Scenario, folder: Path, command: str) -> int:
     """
     from boatsim.simulate.manoeuvre import approach_summary
     from boatsim.simulate.run_files import run_into_folder
+
+    keep_arrow_from_importing_pandas()
     from boatsim.view.run_observers import page_observer, rerun_observers
 
     tasks = [(scenario.name, scenario.file.duration)]
@@ -321,6 +324,7 @@ def run_task(
         The outcome, also of a run that failed or was interrupted.
     """
     try:
+        keep_arrow_from_importing_pandas()
         from boatsim.simulate.run_files import run_into_folder
         from boatsim.view.run_observers import page_observer, rerun_observers
         from boatsim.view.run_page import run_command

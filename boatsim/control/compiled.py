@@ -14,10 +14,12 @@ from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
 from boatsim.control.base import Controller, Sense
+from boatsim.control.native_law import ONE, single_boat_law
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import lean, merged, unlocked
 
 __all__ = [
+    "ONE",
     "SENSE_FIELDS",
     "SENSE",
     "CompiledController",
@@ -38,7 +40,6 @@ warnings.filterwarnings(
 )
 SENSE_FIELDS = tuple(f.name for f in fields(Sense) if f.name != "more")
 Records = NDArray[np.void]
-ONE = np.zeros(1, dtype=np.int64)  # row of the boat in a single run
 
 
 def record_type(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
@@ -97,6 +98,11 @@ class CompiledController(Controller):
         self._sense, self._goal, self._sent = (
             np.zeros(1, t) for t in (SENSE, *self.record_types())
         )
+        self._run_law: Callable[[], object] | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy or a pickle contains: not the law, which is bound to these arrays."""
+        return {**self.__dict__, "_run_law": None}
 
     def settings_array(self, count: int = 1) -> Records:
         """Return the controller's parameters as an array of equal records for its compiled law.
@@ -134,7 +140,10 @@ class CompiledController(Controller):
         """
         self._sense[0] = tuple([getattr(sense, n) for n in SENSE_FIELDS])
         self._goal[0] = self.goal_values(goal)
-        type(self).law(ONE, self._settings, self._memory, self._sense, self._goal, self._sent)
+        if self._run_law is None:
+            records = (self._settings, self._memory, self._sense, self._goal, self._sent)
+            self._run_law = single_boat_law(type(self).law, records)
+        self._run_law()
         return dict(zip(self.channels(), self._sent[0].item(), strict=True))
 
     @property

@@ -18,6 +18,7 @@ from boatsim.fmu.model_description import (
     fmi2_description,
     fmi3_description,
 )
+from boatsim.fmu.sensors import SensorSuite, sensor_variables
 from boatsim.fmu.source import HEADER, interface_source, program_source
 from boatsim.fmu.surroundings import with_surroundings
 from boatsim.fmu.variables import Variable, vessel_variables
@@ -37,7 +38,11 @@ MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64"
 
 
 def write_fmu(
-    vessel: Vessel, path: Path, fmi_version: str = "3", step: float = STEP
+    vessel: Vessel,
+    path: Path,
+    fmi_version: str = "3",
+    step: float = STEP,
+    sensors: SensorSuite | None = None,
 ) -> list[Variable]:
     """Write a vessel as an FMU with description, C source and a binary of the local compiler.
 
@@ -49,6 +54,7 @@ def write_fmu(
         fmi_version: "3" for co-simulation and model exchange of FMI 3.0, "2" for co-simulation of
             FMI 2.0.
         step: Integration step [s].
+        sensors: Sensors with errors; None for true accelerations only.
 
     Returns:
         The variables of the FMU in the order of their value references.
@@ -66,8 +72,11 @@ def write_fmu(
     except NoCompiler as error:
         raise NoCompiler(f"an FMU contains a binary: {error}") from None
     program = Program(with_surroundings(vessel))
-    variables = vessel_variables(program)
-    files = text_files(program, variables, fmi_version, step)
+    measured: list[Variable] = []
+    if sensors is not None:
+        measured = list(sensor_variables(sensors))
+    variables = vessel_variables(program, measured)
+    files = text_files(program, variables, fmi_version, step, sensors)
     identifier = model_identifier(vessel.name)
     place = _binary_path(fmi_version, identifier)
     binary = _compile(files, fmi_version, command)
@@ -87,7 +96,11 @@ def model_identifier(name: str) -> str:
 
 
 def text_files(
-    program: Program, variables: Sequence[Variable], fmi_version: str, step: float
+    program: Program,
+    variables: Sequence[Variable],
+    fmi_version: str,
+    step: float,
+    sensors: SensorSuite | None = None,
 ) -> Mapping[str, str]:
     """Return the description and the C source of an FMU.
 
@@ -96,6 +109,7 @@ def text_files(
         variables: The variables of the FMU in the order of their value references.
         fmi_version: "3" or "2".
         step: Integration step [s].
+        sensors: Sensors with errors; None for none.
 
     Returns:
         Text of each file by its path in the archive.
@@ -108,11 +122,13 @@ def text_files(
     interface = f"fmi{fmi_version}.c"
     sources = {"vessel.h": interface_source("vessel.h"), interface: interface_source(interface)}
     # The token depends on all that the binary is made of, so that it accepts its own states only.
-    digest = hashlib.sha256(program_source(program, variables, step, "").encode())
+    if sensors is not None:
+        sources |= {name: interface_source(name) for name in ("random.h", "sensors.h")}
+    digest = hashlib.sha256(program_source(program, variables, step, "", sensors).encode())
     for text in sources.values():
         digest.update(text.encode())
     token = f"{{{digest.hexdigest()[:32]}}}"
-    sources[HEADER] = program_source(program, variables, step, token)
+    sources[HEADER] = program_source(program, variables, step, token, sensors)
     model = ModelInformation(vessel.name, identifier, vessel.about, token, step)
     if fmi_version == "3":
         description = fmi3_description(model, variables)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from boatsim.errors import BadInput
+from boatsim.fmu.sensors import SensorSuite, sensor_source, sensor_tables
 from boatsim.fmu.variables import Variable
 from boatsim.physics.commands import input_vector
 from boatsim.physics.kernel.records import FleetArrays
@@ -30,6 +31,9 @@ KINDS = (
     "FORCE",
     "READING",
     "DERIVATIVE",
+    "SENSED",
+    "SENSOR_PARAMETER",
+    "SEED",
 )
 STATE_ARGUMENTS = (REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR)  # t, s, act, at, p, on
 
@@ -89,7 +93,13 @@ def interface_source(name: str) -> str:
     return (Path(__file__).parent / "c" / name).read_text(encoding="utf-8")
 
 
-def program_source(program: Program, variables: Sequence[Variable], step: float, token: str) -> str:
+def program_source(
+    program: Program,
+    variables: Sequence[Variable],
+    step: float,
+    token: str,
+    sensors: SensorSuite | None = None,
+) -> str:
     """Return the generated C source of a vessel's FMU.
 
     Args:
@@ -97,6 +107,7 @@ def program_source(program: Program, variables: Sequence[Variable], step: float,
         variables: The variables of the FMU in the order of their value references.
         step: Integration step [s].
         token: Instantiation token of the FMU.
+        sensors: Sensors with errors; None for none.
 
     Raises:
         NotTranslatable: A law has no C form.
@@ -113,6 +124,7 @@ def program_source(program: Program, variables: Sequence[Variable], step: float,
         *_sizes(program, variables, step),
         f"#define INSTANTIATION_TOKEN {c_text(token)}",
         *_start_values(program),
+        *_sensors(sensors),
         *_variable_table(variables),
         "",
     ]
@@ -180,6 +192,16 @@ def _start_values(program: Program) -> list[str]:
         "START_PARAMETERS": program.values().tolist(),
     }
     return found + [_array(name, values) for name, values in arrays.items()]
+
+
+def _sensors(sensors: SensorSuite | None) -> list[str]:
+    """Definitions of the sensors and of their random numbers."""
+    if sensors is None:
+        return ["#define SENSORS 0"]
+    found = ["#define SENSORS 1", sensor_tables()]
+    found += [f"#define {name} {value}" for name, value in sensor_source(sensors).items()]
+    found.append(f"#define START_SEED {c_number(sensors.seed)}")
+    return [*found, _array("START_SENSORS", sensors.parameters().values())]
 
 
 def _array(name: str, values: Iterable[float]) -> str:

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from math import inf
 
@@ -55,7 +55,7 @@ class Variable:
         unit: Unit, "" for a ratio.
         words: Description.
         causality: "independent", "input", "parameter", "output" or "local".
-        variability: "continuous" or "tunable".
+        variability: "continuous", "discrete", "tunable" or "fixed".
         initial: "exact", "calculated", or "" where FMI allows none.
         start: Start value, None for a calculated one.
         low: Lower bound of a value that is set.
@@ -86,11 +86,12 @@ def quoted_name(name: str) -> str:
     return f"'{QUOTABLE.sub('_', name) or '_'}'"
 
 
-def vessel_variables(program: Program) -> list[Variable]:
+def vessel_variables(program: Program, further: Iterable[Variable] = ()) -> list[Variable]:
     """Return all variables of a vessel's FMU in the order of their value references.
 
     Args:
         program: The compiled program of the vessel, with its surroundings.
+        further: Variables of its sensors, which replace outputs of the same name.
 
     Returns:
         Time, inputs, parameters, outputs, and derivatives of the states.
@@ -101,7 +102,10 @@ def vessel_variables(program: Program) -> list[Variable]:
     found = [Variable("time", "TIME", 0, "s", "simulated time", "independent")]
     found += _inputs(program)
     found += _parameters(program)
-    found += _outputs(program)
+    sensors = list(further)
+    replaced = {variable.name for variable in sensors}
+    found += [variable for variable in _outputs(program) if variable.name not in replaced]
+    found += sensors
     found += _derivatives(program)
     for name, count in Counter(variable.name for variable in found).items():
         if count > 1:

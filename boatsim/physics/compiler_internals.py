@@ -20,6 +20,7 @@ MuJoCo in `pyproject.toml` exist because of these two modules: raise a bound aft
 
 import ctypes
 import pickle
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
@@ -41,7 +42,6 @@ from numba.core.caching import (
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import AbstractTemplate, Signature, infer_global, signature
 from numba.extending import intrinsic, lower_builtin
-from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.cache_folder import cache_folder
@@ -260,6 +260,8 @@ def compile_callback(function: Callable[..., Any]) -> Any:
 # ------------------------------------------------------------------------------------------------
 
 FIELDS = ("qpos", "qvel", "userdata", "qfrc_passive", "M")  # arrays of mjData
+WORD = 8  # [bytes]
+BLOCK = 32  # [words] that are searched at a time
 SEARCH_LIMIT = 1 << 17  # [words] every field of interest lies within this distance of the start
 PROBE_TIME = 76543.21098765432  # [s] occurs nowhere else in a fresh mjData
 PROBE_SIZES = (1237, 3571, 911)  # sizes of userdata that occur nowhere else in a fresh mjModel
@@ -296,9 +298,9 @@ def mujoco_layout() -> dict[str, int]:
         for name in FIELDS:
             # A field of size zero has the address of the next one: of the candidates that are
             # common to both probes the last one is right.
-            hits = set(range(SEARCH_LIMIT))
-            for data in probes:
-                hits &= _search(data._address, getattr(data, name).ctypes.data)
+            first, second = probes
+            hits = _search(first._address, getattr(first, name).ctypes.data)
+            hits &= _search(second._address, getattr(second, name).ctypes.data)
             if not hits:
                 raise BadPhysics(f"mjData.{name} not found in MuJoCo {mujoco.__version__}")
             found[name] = max(hits)
@@ -319,17 +321,18 @@ def _search(address: int, wanted: int) -> set[int]:
     Ends soon after the first one, to stay within the struct.
     """
     hits: set[int] = set()
-    for start in range(0, SEARCH_LIMIT, 32):
-        found = np.flatnonzero(_memory_words(address + 8 * start, 32) == wanted)
-        hits |= set((start + found).tolist())
-        if hits and not len(found):
+    pattern = wanted.to_bytes(WORD, sys.byteorder, signed=True)
+    for start in range(0, SEARCH_LIMIT, BLOCK):
+        words = ctypes.string_at(address + WORD * start, WORD * BLOCK)
+        found = words.find(pattern)
+        before = len(hits)
+        while found >= 0:
+            if found % WORD == 0:
+                hits.add(start + found // WORD)
+            found = words.find(pattern, found + 1)
+        if hits and len(hits) == before:
             break
     return hits
-
-
-def _memory_words(address: int, count: int) -> NDArray[np.int64]:
-    """View of `count` 8-byte words of memory."""
-    return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_int64)), (count,))
 
 
 def _offset_of_nuserdata() -> int:

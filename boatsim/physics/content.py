@@ -167,20 +167,19 @@ def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
 
 
 def _in_library(kind: str, name: str, base_folder: Path | None) -> Path | None:
+    if kind == "scenario":
+        return _scenario_file(content_root(), name)
     if name not in shipped_content_names(kind):
         return None
     folder = content_root() / KINDS[kind]
-    if kind == "scenario":
-        return _scenarios(content_root())[name]
     return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}.py"
 
 
 def _in_user_content(kind: str, name: str, base_folder: Path | None = None) -> Path | None:
     if kind == "scenario":
         for folder in trust.user_content_folders():
-            scenarios = _scenarios(folder)
-            if name in scenarios:
-                return scenarios[name]
+            if (path := _scenario_file(folder, name)) is not None:
+                return path
         return None
     file = name if name.endswith(".py") else f"{name}.py"
     if kind == "vessel":
@@ -200,13 +199,36 @@ def _in_working_directory(kind: str, name: str, base_folder: Path | None) -> Pat
     return file.resolve() if file.is_file() else None
 
 
-def _scenarios(home: Path) -> dict[str, Path]:
+def is_scenario_name(name: str) -> bool:
+    """Return whether a scenario, shipped or of the user, has the full name folder/file or case.
+
+    Args:
+        name: Any text.
+    """
+    homes = (content_root(), *trust.user_content_folders())
+    return any(_scenario_file(home, name) is not None for home in homes)
+
+
+def _scenario_file(home: Path, name: str) -> Path | None:
+    """The file of a scenario by its full name; only files in its folder are read."""
+    folder, _, case = name.partition("/")
+    if not folder or not case:
+        return None
+    return _scenarios(home, folder).get(name)
+
+
+def _scenarios(home: Path, folder: str = "*") -> dict[str, Path]:
     """Name of every scenario in a folder of content, folder/file or folder/case -> its file.
 
-    Raises BadInput.
+    With `folder`, only of that one. Raises BadInput.
     """
     found: dict[str, Path] = {}
-    for path in sorted((home / KINDS["scenario"]).glob("*/[!_]*.toml")):
+    scenarios = home / KINDS["scenario"]
+    if folder == "*":
+        files = scenarios.glob("*/[!_]*.toml")
+    else:
+        files = (scenarios / folder).glob("[!_]*.toml")
+    for path in sorted(files):
         for case in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
             name = f"{path.parent.name}/{case}"
             if name in found:

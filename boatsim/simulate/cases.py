@@ -25,6 +25,7 @@ from boatsim.physics.content import (
     content_root,
     find_content_file,
     full_scenario_name,
+    is_scenario_name,
 )
 
 NAME = re.compile(r"[\w.+-]+")
@@ -95,13 +96,13 @@ def find_scenarios(given: str) -> list[str]:
     Raises:
         BadInput: If there is none.
     """
+    if is_scenario_name(given):
+        return [given]
     shipped = all_content_names("scenario")
     if not given:
         raise BadInput(
             f"the name of a scenario is empty; {unknown_name_message('scenario', given, shipped)}"
         )
-    if given in shipped:
-        return [given]
     inside = [name for name in shipped if name.startswith(f"{given.rstrip('/')}/")]
     if inside:
         return inside

@@ -8,12 +8,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import nan
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array, CheckedParameters, param
+from boatsim.physics.debugging import python_function
 from boatsim.physics.kernel.compiling import lean
 from boatsim.simulate.stepper import Stepper
 
@@ -48,6 +49,9 @@ def add_sensor_errors(felt: Array, sensors: Array, noise: Array) -> None:
     felt[7] = felt[7] + position_sd * noise[5] if position_sd >= 0.0 else nan
     felt[8] = felt[8] + position_sd * noise[6] if position_sd >= 0.0 else nan
     felt[9] = felt[10] = nan
+
+
+_add_sensor_errors_in_python = python_function(add_sensor_errors)
 
 
 @dataclass(frozen=True)
@@ -112,9 +116,11 @@ class Sensors(CheckedParameters):
         )
         if self.ideal:
             return Sense(*felt)
-        row = np.array(felt)
-        add_sensor_errors(row, self.error_parameters, rng.standard_normal(NOISES))
-        return Sense(*row.tolist())
+        row: Any = list(felt)
+        noise = rng.standard_normal(NOISES).tolist()
+        # interpreted: for one vessel that is faster than to call the compiled function
+        _add_sensor_errors_in_python(row, self._error_list, noise)
+        return Sense(*row)
 
     @cached_property
     def error_parameters(self) -> Array:
@@ -124,6 +130,10 @@ class Sensors(CheckedParameters):
         """
         values = [float(getattr(self, name)) for name in type(self).params()]
         return np.array([float(self.ideal), *values])
+
+    @cached_property
+    def _error_list(self) -> Any:
+        return self.error_parameters.tolist()
 
 
 @dataclass(frozen=True)

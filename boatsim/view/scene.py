@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
@@ -30,6 +29,9 @@ ELLIPSOID = 4
 CYLINDER = 5
 BOX = 6
 MESH = 7
+# twice the area of a triangle, by that of the box around all points, below which its corners count
+# as lying on a line; far above rounding
+FLATNESS = 1e-12
 REACH = 0.6  # length of the arrow of full thrust, by the length of the vessel
 # force of an arrow of that length by the weight of a vessel whose thrust is not a command
 PUSH = 0.05
@@ -92,8 +94,37 @@ class Scene:
     def hull_outline(self) -> Array:
         """Return the outline of the drawn hull from above, a closed convex polygon (V, 2) [m]."""
         points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
-        corners = ConvexHull(points).vertices
-        return np.asarray(points[np.append(corners, corners[0])], dtype=float)
+        corners = convex_hull(points)
+        return np.concatenate([corners, corners[:1]])
+
+
+def convex_hull(points: Array) -> Array:
+    """Return the corners (V, 2) of the convex hull of points in a plane, counterclockwise.
+
+    It is the method of two chains (A. M. Andrew, Information Processing Letters 9, 1979), which
+    needs none of scipy's geometry, whose import takes as long as a short run.
+
+    Args:
+        points: The points (N, 2).
+    """
+    ordered = np.unique(np.asarray(points, dtype=float), axis=0)  # by x, then by y
+    flat = FLATNESS * float(np.prod(np.ptp(ordered, axis=0)))
+    lower = _chain(ordered.tolist(), flat)
+    upper = _chain(ordered[::-1].tolist(), flat)
+    return np.array(lower[:-1] + upper[:-1])
+
+
+def _chain(points: list[list[float]], flat: float) -> list[list[float]]:
+    """The points at which the lower or upper half of a convex hull turns to the left."""
+    found: list[list[float]] = []
+    for x, y in points:
+        while len(found) > 1:
+            (ax, ay), (bx, by) = found[-2:]
+            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > flat:
+                break
+            found.pop()
+        found.append([x, y])
+    return found
 
 
 def scene_from_model(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:

@@ -315,6 +315,13 @@ def export_fmu(
     step: Annotated[
         float, typer.Option(metavar="S", help="Integration step [s]; that of a scenario is 0.02.")
     ] = 0.02,
+    sensors: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SCENARIO",
+            help="Scenario whose sensors the unit has, with their errors; default: none.",
+        ),
+    ] = None,
     load: Load = None,
     content: Content = None,
     trust: Trusted = False,
@@ -322,5 +329,6 @@ def export_fmu(
     """Write a vessel as a functional mock-up unit (FMU), for other simulators."""
     from boatsim.cli.exporting import export_vessel
 
-    with trusted_content(content, trust, [vessel]):
-        return export_vessel(vessel, out, fmi, step, split_loads(load))
+    named = [vessel, *([sensors] if sensors else [])]
+    with trusted_content(content, trust, named):
+        return export_vessel(vessel, out, fmi, step, split_loads(load), sensors)

@@ -12,6 +12,7 @@ import typer
 
 from boatsim.cli.application import app, exits_with_code
 from boatsim.cli.exits import print_lines
+from boatsim.cli.fast_start import collect_garbage_rarely
 from boatsim.cli.options import (
     Content,
     Jobs,
@@ -108,6 +109,7 @@ def run(
 
     Each run has a folder. Open its report.html in a browser, or list all runs by boatsim open out.
     """
+    collect_garbage_rarely()
     from boatsim.cli.run_many import ViewerOptions, run_all
 
     if speed is not None and not (live or serve):

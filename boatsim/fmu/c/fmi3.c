@@ -251,11 +251,17 @@ EXPORTED fmi3Status fmi3UpdateDiscreteStates(
     instance_t *self = instance;
     vessel_t *s = &self->vessel;
     *needs_update = *terminate = *nominals_changed = *values_changed = *next_defined = false;
-    if (self->model_exchange && ACTUATORS_HAVE_STATES) {
+    if (!self->model_exchange) return fmi3OK;
+    sample_sensors(s);
+    *next_time = INFINITY;
+    if (ACTUATORS_HAVE_STATES) {
         begin_part(s);
-        *next_defined = true;
         *next_time = s->part_begin + s->part_length;
     }
+#if SENSORS
+    *next_time = fmin(*next_time, s->sensors.due);
+#endif
+    *next_defined = isfinite(*next_time);
     return fmi3OK;
 }
 

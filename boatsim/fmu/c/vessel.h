@@ -12,6 +12,12 @@
 #define INSTRUMENT_READINGS 10
 #define FIRST_ACCELERATION 2 /* place of the acceleration along x among the readings */
 
+#if SENSORS
+#include "random.h"
+
+#include "sensors.h"
+#endif
+
 /* All that changes in a simulation, without pointers, so that it can be copied and stored */
 typedef struct {
     double time;             /* [s] */
@@ -32,6 +38,9 @@ typedef struct {
     double step_end;        /* [s] end of the step to which the part belongs */
     double before_part[MEMORY]; /* memory at the begin of the part */
     int64_t initialised;    /* whether the initialisation has ended */
+#if SENSORS
+    sensors_t sensors;
+#endif
 } vessel_t;
 
 INLINE array1_t array(const double *numbers, int64_t count) {
@@ -44,6 +53,10 @@ static void set_start_values(vessel_t *s) {
     memcpy(s->inputs, START_INPUTS, sizeof s->inputs);
     memcpy(s->body, START_BODY, sizeof s->body);
     memcpy(s->parameters, START_PARAMETERS, sizeof s->parameters);
+#if SENSORS
+    s->sensors.seed = START_SEED;
+    memcpy(s->sensors.parameters, START_SENSORS, sizeof s->sensors.parameters);
+#endif
 }
 
 static void update_masses(vessel_t *s) {
@@ -89,6 +102,8 @@ static void solve(double a[NQ][NQ], double *b) {
     }
 }
 
+static void sample_sensors(vessel_t *s);
+
 /* Compute the state from the start values: joint rates from velocities, actuators settled. */
 static void initialise(vessel_t *s) {
     double jacobian[6 * NQ] = {0}, rows[NQ][NQ];
@@ -102,6 +117,11 @@ static void initialise(vessel_t *s) {
     s->part_length = s->part_before = 0.0;
     s->part_least = SHORTEST;
     s->step_end = s->time;
+#if SENSORS
+    start_sensors(&s->sensors);
+    s->sensors.due = s->time;
+#endif
+    sample_sensors(s);
 }
 
 static bool is_finite(const vessel_t *s) {
@@ -134,7 +154,10 @@ static void advance(vessel_t *s, double length) {
         {s->masses, 1, MASSES},
         ARRAY(s->external),
     };
-    for (int64_t i = 0; i < steps; i++) ADVANCE_BOATS((rows1_t){&first, 1}, fleet, dt, 1);
+    for (int64_t i = 0; i < steps; i++) {
+        ADVANCE_BOATS((rows1_t){&first, 1}, fleet, dt, 1);
+        sample_sensors(s);
+    }
 }
 
 /* Model exchange
@@ -200,6 +223,23 @@ static void state_derivatives(const vessel_t *s, double *derivatives) {
     memcpy(derivatives + NQ, &found, NQ * sizeof(double));
 }
 
+/* Take a sample of the sensors, if there are any and one is due. */
+static void sample_sensors(vessel_t *s) {
+#if SENSORS
+    if (s->time < s->sensors.due - SAMPLE_SLACK) return;
+    s->sensors.due += SAMPLE_PERIOD;
+    double now[HELD], readings[INSTRUMENT_READINGS], motion[MOTION_SIGNALS];
+    present_actuators(s, now);
+    readings_t found = INSTRUMENTS(
+        s->time, ARRAY(s->y), ARRAY(now), 0, ARRAY(s->parameters), ARRAY(SWITCHES),
+        ARRAY(s->masses), ARRAY(s->external));
+    memcpy(readings, &found, sizeof readings);
+    motion_t moved = POSE_AND_VELOCITIES(ARRAY(s->y));
+    memcpy(motion, &moved, sizeof motion);
+    read_sensors(&s->sensors, readings, motion, s->time);
+#endif
+}
+
 /* Variables by value reference
    --------------------------------------------------------------------------------------------- */
 
@@ -256,6 +296,11 @@ static bool get_variable(const vessel_t *s, uint32_t reference, double *value) {
         case FORCE: *value = body_force(s, i); break;
         case READING: *value = instrument_reading(s, FIRST_ACCELERATION + i); break;
         case DERIVATIVE: *value = derivative(s, i); break;
+#if SENSORS
+        case SENSED: *value = s->sensors.sensed[i]; break;
+        case SENSOR_PARAMETER: *value = s->sensors.parameters[i]; break;
+        case SEED: *value = s->sensors.seed; break;
+#endif
     }
     return true;
 }
@@ -286,6 +331,23 @@ static bool set_variable(vessel_t *s, uint32_t reference, double value, char *me
             }
             snprintf(message, LONGEST_MESSAGE, "%s can be set before the start only", name);
             return false;
+#if SENSORS
+        case SEED:
+        case SENSOR_PARAMETER:
+            if (s->initialised) {
+                snprintf(message, LONGEST_MESSAGE, "%s can be set before the start only", name);
+                return false;
+            }
+            if (VARIABLE[reference].kind == SENSOR_PARAMETER) {
+                s->sensors.parameters[i] = value;
+            } else if (value != floor(value)) {
+                snprintf(message, LONGEST_MESSAGE, "%s = %g; allowed are whole numbers", name, value);
+                return false;
+            } else {
+                s->sensors.seed = value;
+            }
+            return true;
+#endif
         default: snprintf(message, LONGEST_MESSAGE, "%s cannot be set", name); return false;
     }
 }

@@ -14,8 +14,11 @@ from boatsim.physics.native.kinds import (
     WHOLE,
     ArrayKind,
     Kind,
+    Record,
+    RecordArray,
     Scalar,
     Struct,
+    record_kind,
     scalar_and_array_kinds,
 )
 from boatsim.physics.native.translate import Translation
@@ -132,10 +135,12 @@ class NativeFunction:
         return self._result(*results[:found].tolist())
 
 
-def _format(leaf: Scalar | ArrayKind) -> str:
+def _format(leaf: Scalar | ArrayKind | Record | RecordArray) -> str:
     """Letters of `struct` for a number, or for an array's address and sizes."""
     if isinstance(leaf, ArrayKind):
         return "Q" + "q" * leaf.dimensions
+    if isinstance(leaf, Record | RecordArray):
+        return "Q"
     if leaf == REAL:
         return "d"
     return "q"
@@ -160,6 +165,10 @@ def _flatten(kind: Kind, value: Any, out: list[Any]) -> None:
             )
         out.append(_address(value))
         out += value.shape
+    elif isinstance(kind, RecordArray):
+        if record_kind(value.dtype) != kind.item or not value.flags.c_contiguous:
+            raise TypeError(f"a record array of {value.dtype}, not of the kind of the function")
+        out.append(int(value.ctypes.data))
     elif kind == REAL:
         out.append(value)
     else:

@@ -10,7 +10,17 @@ from collections.abc import Iterator, Sequence
 from itertools import count
 from typing import Any
 
-from boatsim.physics.native.kinds import NOTHING, REAL, TRUTH, ArrayKind, Kind, Scalar, Struct
+from boatsim.physics.native.kinds import (
+    NOTHING,
+    REAL,
+    TRUTH,
+    ArrayKind,
+    Kind,
+    Record,
+    RecordArray,
+    Scalar,
+    Struct,
+)
 from boatsim.physics.native.translate import Translation
 
 
@@ -28,6 +38,8 @@ def argument_expression(kind: Kind, word: Iterator[int]) -> str:
         address = f"({kind.item.c} *)a[{next(word)}].at"
         sizes = [f"a[{next(word)}].whole" for _ in range(kind.dimensions)]
         return f"(({kind.c}){{{', '.join([address, *sizes])}}})"
+    if isinstance(kind, Record | RecordArray):
+        return f"(double *)a[{next(word)}].at"
     if kind == REAL:
         return f"a[{next(word)}].real"
     if kind == TRUTH:

@@ -3,6 +3,7 @@
 import ast
 import builtins
 import inspect
+import math
 import operator
 import textwrap
 from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -20,6 +21,8 @@ from boatsim.physics.native.kinds import (
     WHOLE,
     ArrayKind,
     Kind,
+    Record,
+    RecordArray,
     Scalar,
     Struct,
     Value,
@@ -42,7 +45,9 @@ FOLDED: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Mult: operator.mul,
 }
 ALLOCATIONS: tuple[Any, ...] = (np.zeros, np.empty)
-PREDICATES: Mapping[Any, str] = {np.isnan: "isnan", np.isfinite: "isfinite", np.isinf: "isinf"}
+PREDICATES: Mapping[Any, str] = {
+    getattr(source, name): name for source in (math, np) for name in ("isnan", "isfinite", "isinf")
+}
 ROW_FUNCTIONS = {(2, 1): "row_of2", (3, 1): "row_of3", (3, 2): "line_of3"}
 
 
@@ -161,7 +166,20 @@ class ExpressionTranslator:
             return Value(owner.kind.field_kind(field), f"{owner.text}.{field}")
         if isinstance(owner.kind, ArrayKind) and node.attr == "size" and owner.kind.dimensions == 1:
             return Value(WHOLE, f"{owner.text}.n0")
+        if isinstance(owner.kind, Record) and node.attr in owner.kind.names:
+            return self.record_field(owner.text, owner.kind, node.attr)
         raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+
+    def record_field(self, owner: str, kind: Record, name: str) -> Value:
+        """Return the C expression of a field of a record."""
+        i = kind.names.index(name)
+        field, place = kind.kinds[i], kind.places[i]
+        if field == REAL:
+            return Value(REAL, f"{owner}[{place}]")
+        if isinstance(field, ArrayKind):
+            sizes = ", ".join(map(str, kind.sizes[i]))
+            return Value(field, f"(({field.c}){{{owner} + {place}, {sizes}}})")
+        return Value(field, f"({owner} + {place})")
 
     def tuple_field(self, owner: Value, i: int) -> Value:
         """Return the C expression of one entry of a translated tuple."""
@@ -182,6 +200,10 @@ class ExpressionTranslator:
         owner = self.translate_expression(node.value)
         if isinstance(owner.kind, Struct):
             return self.translate_tuple_entry(owner, node)
+        if isinstance(owner.kind, RecordArray):
+            place = self.translate_integer(node.slice)
+            record = owner.kind.item
+            return Value(record, f"({owner.text} + {place.text} * {record.words})")
         if not isinstance(owner.kind, ArrayKind):
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         places = [node.slice]
@@ -398,6 +420,9 @@ class ExpressionTranslator:
             if what in PREDICATES:
                 of = convert_to_double(self.translate_expression(node.args[0]))
                 return Value(TRUTH, f"((bool){PREDICATES[what]}({of.text}))")
+            if what is round and len(node.args) == 1:
+                of = convert_to_double(self.translate_expression(node.args[0]))
+                return Value(WHOLE, f"((int64_t)rint({of.text}))")
             if what in ALLOCATIONS:
                 return self.allocate_array(node)
             if what in MATH:

@@ -15,6 +15,9 @@ MATH: Mapping[Any, str] = {
     **{
         getattr(math, name): name for name in ("atan2", "acos", "asin", "atan", "hypot", "copysign")
     },
+    math.degrees: "degrees_of",
+    math.radians: "radians_of",
+    np.rint: "rint",
     math.fabs: "fabs",
     math.pow: "pow",
     np.arctan2: "atan2",

@@ -64,6 +64,8 @@ INLINE double remainder_real(double a, double b) {
     double m = fmod(a, b);
     return m != 0.0 && (m < 0.0) != (b < 0.0) ? m + b : m;
 }
+INLINE double degrees_of(double x) { return x * 0x1.ca5dc1a63c1f8p+5; }  /* 180 / pi */
+INLINE double radians_of(double x) { return x * 0x1.1df46a2529d39p-6; }  /* pi / 180 */
 INLINE double power2(double x) { return x * x; }
 INLINE double power3(double x) { return x * (x * x); }
 INLINE double power4(double x) { return (x * x) * (x * x); }

@@ -2,6 +2,11 @@
 
 from dataclasses import dataclass
 from itertools import chain
+from typing import Any
+
+import numpy as np
+
+WORD = 8  # bytes of a number
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,35 @@ class Struct:
         return None
 
 
-Kind = Scalar | ArrayKind | Struct
+@dataclass(frozen=True)
+class Record:
+    """A record of a NumPy structured array, all of whose numbers are floats, in place in memory."""
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]  # [words] of each field from the begin of the record
+    kinds: tuple["Kind", ...]  # numbers, records, and vectors and matrices of numbers
+    sizes: tuple[tuple[int, ...], ...]  # of each vector or matrix; () of the others
+    words: int  # length of the record
+
+    @property
+    def c(self) -> str:
+        """Name of the C type: a pointer to the first number."""
+        return "double *"
+
+
+@dataclass(frozen=True)
+class RecordArray:
+    """A contiguous array of records."""
+
+    item: Record
+
+    @property
+    def c(self) -> str:
+        """Name of the C type: a pointer to the first number of the first record."""
+        return "double *"
+
+
+Kind = Scalar | ArrayKind | Struct | Record | RecordArray
 
 REAL = Scalar("double")
 WHOLE = Scalar("int64_t")
@@ -64,7 +97,33 @@ class Value:
     fixed: object = None  # bool, int, float or a tuple of these
 
 
-def scalar_and_array_kinds(kind: Kind) -> list[Scalar | ArrayKind]:
+def record_kind(dtype: Any) -> Record:
+    """Return the kind of the records of a NumPy structured array.
+
+    Args:
+        dtype: Type of the records.
+
+    Raises:
+        TypeError: A number of the record is no float, or an array has more than two dimensions.
+    """
+    names, places, kinds, sizes = [], [], list[Kind](), []
+    for name, (field, offset, *_) in (dtype.fields or {}).items():
+        names.append(name)
+        places.append(offset // WORD)
+        sizes.append(field.shape)
+        if field.names:
+            kinds.append(record_kind(field))
+        elif field.base != np.float64 or len(field.shape) > MATRIX.dimensions:
+            raise TypeError(f"field {name} of a record is of {field}")
+        elif field.shape:
+            kinds.append(ArrayKind(REAL, len(field.shape)))
+        else:
+            kinds.append(REAL)
+    words = dtype.itemsize // WORD
+    return Record(tuple(names), tuple(places), tuple(kinds), tuple(sizes), words)
+
+
+def scalar_and_array_kinds(kind: Kind) -> list[Scalar | ArrayKind | Record | RecordArray]:
     """Return the kinds of all numbers and arrays in a possibly nested struct, in order.
 
     Args:

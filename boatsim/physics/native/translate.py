@@ -190,7 +190,7 @@ class FunctionTranslator(ExpressionTranslator):
         found = [self.translate_expression(v) for v in values]
         set_ = {n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)}
         read = {n.id for v in values[1:] for n in ast.walk(v) if isinstance(n, ast.Name)}
-        stores = any(isinstance(t, ast.Subscript) for t in targets)
+        stores = any(isinstance(t, ast.Subscript | ast.Attribute) for t in targets)
         if set_ & read or stores:
             found = [v if v.fixed is not None else self.copy_to_variable(v) for v in found]
         for target, value in zip(targets, found, strict=True):
@@ -217,6 +217,8 @@ class FunctionTranslator(ExpressionTranslator):
                 self.translate_assignment(part, self.tuple_field(whole, i))
         elif isinstance(target, ast.Subscript):
             self.assign_array_entry(target, value)
+        elif isinstance(target, ast.Attribute):
+            self.assign_record_field(target, value)
         elif isinstance(target, ast.Name):
             self.assign_variable(target, value)
         else:
@@ -235,6 +237,13 @@ class FunctionTranslator(ExpressionTranslator):
             self.add_line(f"{place.text} = {text};")
         else:
             raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
+
+    def assign_record_field(self, target: ast.Attribute, value: Value) -> None:
+        """Write the C source that assigns to a number of a record."""
+        place = self.translate_expression(target)
+        if place.kind != REAL or not isinstance(value.kind, Scalar):
+            raise self.unsupported_error(target, f"'{ast.unparse(target)} = ...'")
+        self.add_line(f"{place.text} = {convert_to_double(value).text};")
 
     def assign_variable(self, target: ast.Name, value: Value) -> None:
         """Write the C source that assigns to a variable, a float if any assignment is one."""

@@ -1,0 +1,77 @@
+"""The compiled law of a controller for a single boat, in C where there is a C compiler.
+
+numba needs a second for a law, the C compiler a tenth of it, and both give the same numbers to the
+last bit. Batches of boats, whose loop is numba's, call numba's law.
+"""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from inspect import getsourcefile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.physics.cache_folder import cache_folder
+from boatsim.physics.debugging import DEBUG, python_function
+from boatsim.physics.dependency_hash import dependency_digest
+from boatsim.physics.native.build import NoCompiler, load_library, warn_of_slow_compilation
+from boatsim.physics.native.calls import NativeFunction
+from boatsim.physics.native.declarations import NotTranslatable
+from boatsim.physics.native.entries import Entry
+from boatsim.physics.native.exports import export_function
+from boatsim.physics.native.kinds import ROWS, Kind, RecordArray, record_kind
+from boatsim.physics.native.translate import Translation
+
+NAME = "boatsim_law"  # of the function in its library
+ONE = np.zeros(1, dtype=np.int64)  # row of the boat
+
+
+def single_boat_law(law: Any, records: Sequence[NDArray[np.void]]) -> Callable[[], object]:
+    """Return a function that computes the commands of the controller of one boat.
+
+    Args:
+        law: The compiled law of a controller, `CompiledController.law`.
+        records: Arrays (1,) with settings, memory, sensor readings, goals and commands, which each
+            call reads and changes.
+    """
+    native = _native_law(law, tuple(array.dtype for array in records))
+    if native is None:
+        return partial(law, ONE, *records)
+    call: Callable[[], object] = native.partial(ONE, *records)
+    return call
+
+
+@cache
+def _native_law(law: Any, types: tuple[np.dtype[np.void], ...]) -> NativeFunction | None:
+    """The law in C for these types of records; None if only numba can compile it."""
+    python = python_function(law)
+    file = getsourcefile(python)
+    # values of a closure are in no file, so that a library could not be named by them
+    if DEBUG or file is None or python.__closure__:
+        return None
+    try:
+        kinds: list[Kind] = [ROWS]
+        for of in types:
+            kinds.append(RecordArray(record_kind(of)))
+        stamp = f"{dependency_digest(Path(file))} {python.__qualname__} {kinds}"
+        digest = hashlib.sha256(stamp.encode()).hexdigest()[:16]
+        name = f"law_{python.__module__.rpartition('.')[2]}_{digest}"
+        folder = cache_folder() / "laws"
+        folder.mkdir(exist_ok=True)
+        library = load_library(folder, name, partial(_translate_law, law, kinds))
+    except (TypeError, NotTranslatable, OSError):
+        return None
+    except NoCompiler as error:
+        warn_of_slow_compilation(error)
+        return None
+    return NativeFunction(getattr(library, NAME), Entry(kinds))
+
+
+def _translate_law(law: Any, kinds: Sequence[Kind]) -> str:
+    """C source of a law and of all functions that it calls."""
+    program = Translation()
+    export_function(program, NAME, law, kinds)
+    return program.source_text
