@@ -15,6 +15,9 @@ FAMILIES = {
     "roll_rms_rad": ("phi_rad",),
     "heave_rms_m": ("z_m",),
 }
+# Rms error [m or rad] that is stated where a simulation diverges, so that it stays a number; far
+# above that of any simulation that does not
+DIVERGED = 1e6
 
 
 @dataclass(frozen=True)
@@ -121,7 +124,7 @@ def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
 
     The first key is the family of signals (position, heading, roll or heave), the second one the
     model. The rms error of the position is that over both coordinates; the rms distance from the
-    recorded position is 1.41 times as large.
+    recorded position is 1.41 times as large. Where a simulation diverges it is `DIVERGED`.
 
     Args:
         runs: Free runs with the same models.
@@ -138,7 +141,7 @@ def rms_errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
             off: list[Array] = []
             for run in runs:
                 off += run.deviations(model, signals)
-            found[family][model] = float(np.sqrt(mean_square(off)))
+            found[family][model] = min(float(np.sqrt(mean_square(off))), DIVERGED)
     return found
 
 

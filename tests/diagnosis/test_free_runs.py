@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from boatsim.diagnosis.free_runs import FreeRun, rms_errors
+from boatsim.diagnosis.free_runs import DIVERGED, FreeRun, rms_errors
+from boatsim.diagnosis.search.generalization import mean_square_errors
 from boatsim.physics.base import Array
 
 N = np.nan
@@ -18,10 +19,12 @@ def test_rows_without_a_recorded_value_do_not_count() -> None:
     assert rms_errors(runs)["heading_rms_rad"]["it"] == np.sqrt(0.5)
 
 
-def test_a_simulation_that_diverges_has_an_infinite_error() -> None:
+def test_a_simulation_that_diverges_has_an_infinite_error_stated_as_a_number() -> None:
     sound = run(np.array([1.0, 2.0]), np.array([1.0, 3.0]))
     for end in (N, np.inf, -np.inf):
         diverging = run(np.array([1.0, 2.0]), np.array([1.0, end]))
-        assert rms_errors([sound, diverging])["heading_rms_rad"]["it"] == np.inf
+        squares = mean_square_errors([sound, diverging], "it")["heading_rms_rad"]
+        assert squares[0] == 0.5 and squares[1] == np.inf
+        assert rms_errors([sound, diverging])["heading_rms_rad"]["it"] == DIVERGED
     unrecorded = run(np.array([1.0, N]), np.array([1.0, N]))
     assert np.isfinite(rms_errors([sound, unrecorded])["heading_rms_rad"]["it"])
