@@ -4,6 +4,7 @@ its bound is raised.
 Each test covers one assumption in the list of `boatsim.physics.compiler_internals`.
 """
 
+import ctypes
 import importlib
 import os
 import re
@@ -18,6 +19,7 @@ import numpy as np
 import pytest
 from numba import carray, njit, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numpy.typing import NDArray
 
 from boatsim.physics import compiler_internals as internals
 from boatsim.physics.cache_folder import cache_folder
@@ -151,16 +153,21 @@ def test_5_a_callback_follows_an_address_to_an_array() -> None:
     assert target[0] == 3.0
 
 
+def words_at(address: int, count: int) -> NDArray[np.int64]:
+    """Words of memory from an address on."""
+    return np.frombuffer(ctypes.string_at(address, 8 * count), dtype=np.int64)
+
+
 def test_6_the_fields_of_the_structs_of_mujoco_are_found() -> None:
     layout = internals.mujoco_layout()
     model = mujoco.MjModel.from_xml_string(internals.PROBE_MODELS[1])
     data = mujoco.MjData(model)
     data.time = 1.25
-    words = internals._memory_words(data._address, max(layout.values()) + 1)
+    words = words_at(data._address, max(layout.values()) + 1)
     for name in internals.FIELDS:
         assert words[layout[name]] == getattr(data, name).ctypes.data, f"mjData.{name}"
     assert words.view(np.float64)[layout["time"]] == 1.25
-    sizes = internals._memory_words(model._address, 256).view(np.int32)
+    sizes = words_at(model._address, 256).view(np.int32)
     assert sizes[layout["nuserdata"]] == model.nuserdata
 
 
