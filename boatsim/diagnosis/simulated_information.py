@@ -59,7 +59,7 @@ def covariance_by_simulations(problem: Problem, found: Fit) -> Array:
     for signals in FAMILIES.values():
         errors = [error for run in runs for error in run.deviations(FITTED, signals)]
         variance = mean_square(errors) if errors else np.nan
-        if not variance > 0.0:  # nothing was recorded, or a simulated boat diverges
+        if not 0.0 < variance < np.inf:  # nothing was recorded, or a simulated boat diverges
             continue
         for i, run in enumerate(runs):
             others = [each[i] for each in changed]

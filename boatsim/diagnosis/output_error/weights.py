@@ -127,6 +127,8 @@ def log_likelihood_gain(
     """
     signals = sum(found.signals[family] for family in scale)
     change = _change_of_logarithms(found, reference, scale)
+    if np.any(change == np.inf):
+        return -np.inf
     return float(-0.5 * np.sum((DEGREES_OF_FREEDOM + signals) * change))
 
 
@@ -144,7 +146,10 @@ def typical_error_ratio(
         reference: Errors of the model that it is compared with.
         scale: Scale of the errors by family.
     """
-    return float(np.exp(0.5 * np.mean(_change_of_logarithms(found, reference, scale))))
+    change = _change_of_logarithms(found, reference, scale)
+    if np.any(change == np.inf):
+        return np.inf
+    return float(np.exp(0.5 * np.mean(change)))
 
 
 def _change_of_logarithms(
