@@ -133,7 +133,7 @@ class OutputErrorSearch:
                 return
 
     def _is_better(self, further: OutputErrorFit) -> bool:
-        """Whether simulations are more probable with one more effect, and those of no group bad."""
+        """Whether simulations are more probable with one more effect, and none clearly worse."""
         fitted = further.evidence - self.best.evidence
         if fitted <= 0.0:
             return False
@@ -141,8 +141,21 @@ class OutputErrorSearch:
         held_out = log_likelihood_gain(after, before, self.errors.scale)
         if held_out <= 0.0 or fitted + held_out < self.config.effect_gain:
             return False
-        return not generalization.harmed_groups(
-            self.problem, self.model, further.model, self.held_out, self.horizon
+        return not self.harms(further.model)
+
+    def harms(self, other: Fit) -> bool:
+        """Whether the rms errors over all or a group of held-out recordings get clearly worse.
+
+        Args:
+            other: Vessel that is compared with the best one so far.
+        """
+        ratio = error_ratio(self.problem, other, self.model, self.held_out, self.horizon)
+        if ratio > self.problem.config.validate.worse:
+            return True
+        return bool(
+            generalization.harmed_groups(
+                self.problem, self.model, other, self.held_out, self.horizon
+            )
         )
 
     def held_out_ratio(self, other: Fit) -> float:

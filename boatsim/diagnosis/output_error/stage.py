@@ -152,9 +152,7 @@ def _better_of_two(
     if generalization.harmed_groups(problem, before, whole.model, held_out, whole.horizon):
         return simple
     whole.add_effects(candidates)
-    if simple.held_out_ratio(whole.model) < 1.0 and not generalization.harmed_groups(
-        problem, simple.model, whole.model, held_out, whole.horizon
-    ):
+    if simple.held_out_ratio(whole.model) < 1.0 and not simple.harms(whole.model):
         return whole
     return simple
 
