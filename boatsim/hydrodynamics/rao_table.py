@@ -116,7 +116,7 @@ def refuse_holes(values: Complex, frequency: Array, direction: Array, path: Path
         k, h, axis = holes[0]
         raise BadInput(
             f"{path}: {AXES[axis]} has no finite value at {frequency[k]:.4g} rad/s and "
-            f"{np.degrees(direction[h]):.4g} deg, and has one at other waves"
+            f"{np.degrees(direction[h]) + 0.0:.4g} deg, and has one at other waves"
         )
 
 
