@@ -39,7 +39,7 @@ class SeaParameters(Effect):
         low=0.0,
         high=30.0,
         unit="m",
-        words="four times the rms of the elevation; 0: calm, default: that of the spectrum's file",
+        words="four times the rms of the elevation; 0: calm; default: that of spectrum_file",
     )
     modal_period: float = param(
         7.5, low=0.2, high=40.0, unit="s", words="period at the peak of the elevation spectrum"
