@@ -1,5 +1,6 @@
 """Reading of TOML files with checks by pydantic models, and atomic writing of files."""
 
+import csv
 import json
 import os
 import re
@@ -244,6 +245,24 @@ class AppendedFile:
     def close(self) -> None:
         """Close the file to which data were appended."""
         self._file.close()
+
+
+def read_csv(path: Path) -> list[list[str]]:
+    """Return the rows of a CSV file in UTF-8.
+
+    Args:
+        path: The file.
+
+    Raises:
+        BadInput: The file cannot be read.
+    """
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            return list(csv.reader(file))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(f"{path}: no CSV file in UTF-8: {error}") from None
+    except OSError as error:
+        raise BadInput(f"{path}: {error.strerror}") from None
 
 
 def toml_value(value: object) -> str:

@@ -18,7 +18,7 @@ from boatsim.hydrodynamics.rao_table import Complex, RaoTable, at_origin, opposi
 from boatsim.hydrodynamics.response import Ballast
 from boatsim.hydrodynamics.veres import SUFFIXES, read_veres
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit, read_wamit_operators
-from boatsim.physics.coefficients.files import write_coefficients, write_wave_loads
+from boatsim.physics.coefficients.files import UNUSED, write_coefficients, write_wave_loads
 from boatsim.physics.coefficients.table import Coefficients, WaveLoads
 from boatsim.physics.signals import AXES, ROTATIONS, Array
 from boatsim.physics.vessel import load_vessel
@@ -105,9 +105,10 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
         found, notes = _from_mesh(hull, options)
     else:
         found = with_memory(_from_output(hull, options))
-    write_coefficients(out, found)
+    renamed = write_coefficients(out, found)
     print_lines(_summary(found))
     print_lines(notes)
+    print_notes(_renaming(out, renamed))
     share = asymmetry(found.added_mass)
     if share > ASYMMETRY:
         print_notes(
@@ -150,10 +151,11 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
         raise BadInput(f"{path}: --vessel and --load apply to tables of motions; these are loads")
     if table.speed > 0.0:
         words += f" at {table.speed:g} m/s"
-    write_wave_loads(
+    renamed = write_wave_loads(
         out,
         WaveLoads(words, table.depth, table.frequency, table.heading, np.asarray(loads)),
     )
+    notes += _renaming(out, renamed)
     print_lines(
         [
             escape_for_terminal(words),
@@ -166,6 +168,17 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
     print_notes(notes)
     print_lines([escape_for_terminal(f"written to {out}")])
     return 0
+
+
+def _renaming(folder: Path, names: Sequence[str]) -> list[str]:
+    """Notes on files that were renamed because the hydrodynamics written now have none."""
+    notes = []
+    for name in names:
+        notes.append(
+            f"{folder / name} is not part of this conversion; renamed to {name}{UNUSED}, and no "
+            "longer used"
+        )
+    return notes
 
 
 def _read_operators(path: Path, options: HydrodynamicsOptions) -> RaoTable:

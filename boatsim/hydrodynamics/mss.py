@@ -12,6 +12,7 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.hydrodynamics.rao_table import RaoTable, complete_table
+from boatsim.physics.signals import AXES, Array
 
 FIELDS = {"motion": "motionRAO", "load": "forceRAO"}
 SAME_SPEED = 1e-3  # [m/s]
@@ -29,7 +30,6 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         BadInput: The file has no such structure, or not this speed.
     """
     from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
 
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
@@ -43,10 +43,7 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         shape = (len(frequency), len(heading), -1)
         size = [np.asarray(one, dtype=float).reshape(shape) for one in operators.amp]
         phase = [np.asarray(one, dtype=float).reshape(shape) for one in operators.phase]
-    except (
-        *(AttributeError, KeyError, IndexError, TypeError, ValueError),
-        *(NotImplementedError, MatReadError),  # of files of another version, or none of MATLAB
-    ):
+    except Exception:  # whatever the reader raises for damaged files and those of other programs
         raise BadInput(
             f"{path}: there is no structure `vessel` of MSS with motionRAO or forceRAO"
         ) from None
@@ -55,6 +52,7 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         known = ", ".join(f"{one:g}" for one in speeds)
         raise BadInput(f"{path}: --speed = {speed:g} m/s; the table has {known} m/s")
     place = int(same[0])
+    _check_sizes(size, phase, len(speeds), path)
     values = np.full((len(frequency), len(heading), 6), np.nan + 0j)
     for axis in range(min(6, len(size))):
         values[:, :, axis] = size[axis][:, :, place] * np.exp(1j * phase[axis][:, :, place])
@@ -70,3 +68,15 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
         depth=depth,
         speed=float(speeds[place]),
     )
+
+
+def _check_sizes(size: list[Array], phase: list[Array], speeds: int, path: Path) -> None:
+    """Raise BadInput unless amplitude and phase have the same axes, and a value at each speed."""
+    if len(size) != len(phase):
+        raise BadInput(f"{path}: {len(size)} axes of amp and {len(phase)} of phase")
+    for name, tables in (("amp", size), ("phase", phase)):
+        for axis, table in zip(AXES, tables, strict=False):
+            if table.shape[2] < speeds:
+                raise BadInput(
+                    f"{path}: {name} of {axis} has {table.shape[2]} of the {speeds} velocities"
+                )

@@ -35,6 +35,9 @@ class RaoTable:
         speed: Forward speed of the vessel [m/s].
         point: Place ahead of the vessel's origin and below it, to which the values and the phase
             of the wave refer [m].
+
+    Raises:
+        BadInput: The speed is negative.
     """
 
     source: str
@@ -45,6 +48,10 @@ class RaoTable:
     depth: float = 0.0
     speed: float = 0.0
     point: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if self.speed < 0.0:
+            raise BadInput(f"{self.source}: speed = {self.speed:g} m/s; allowed is 0 and above")
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -66,8 +73,13 @@ def complete_table(waves: Array, values: Complex, path: Path) -> tuple[Array, Ar
         Frequencies (N,), headings (H,) and values (N, H, 6).
 
     Raises:
-        BadInput: A frequency lacks a heading, or there are fewer than three frequencies.
+        BadInput: A frequency lacks a heading, an axis has a value at some of them only, a frequency
+            or direction is not a number, or there are fewer than three frequencies.
     """
+    if not np.isfinite(waves).all():
+        raise BadInput(f"{path}: a frequency or a direction is not a number")
+    if len(waves) == 0:
+        raise BadInput(f"{path}: there are no rows")
     frequency = _distinct(waves[:, 0])
     angle = _distinct(waves[:, 1])
     if len(frequency) < 3 or frequency[0] <= 0.0:
@@ -84,8 +96,28 @@ def complete_table(waves: Array, values: Complex, path: Path) -> tuple[Array, Ar
             f"{path}: every frequency needs the same headings; {frequency[k]:.4g} rad/s lacks "
             f"{np.degrees(angle[h]):.4g} deg"
         )
+    refuse_holes(grid, frequency, angle, path)
     heading, complete = on_starboard_side(angle, grid, path)
     return frequency, heading, np.asarray(complete, dtype=complex)
+
+
+def refuse_holes(values: Complex, frequency: Array, direction: Array, path: Path) -> None:
+    """Raise BadInput if an axis has a value for some waves only.
+
+    Args:
+        values: Complex values (N, H, 6), nan where there is none.
+        frequency: Angular frequencies (N,) [rad/s].
+        direction: Directions (H,) [rad].
+        path: File, for messages.
+    """
+    absent = np.isnan(values).all(axis=(0, 1))
+    holes = np.argwhere(~np.isfinite(values) & ~absent)
+    if len(holes):
+        k, h, axis = holes[0]
+        raise BadInput(
+            f"{path}: {AXES[axis]} has no finite value at {frequency[k]:.4g} rad/s and "
+            f"{np.degrees(direction[h]) + 0.0:.4g} deg, and has one at other waves"
+        )
 
 
 def _distinct(values: Array) -> Array:

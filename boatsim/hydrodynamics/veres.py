@@ -19,6 +19,7 @@ TEXT_LINES = 6  # at the begin of the file
 # Sign of each motion and force in SNAME axes
 SIGNS = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
 SAME_SPEED = 1e-3  # [m/s]
+COUNTS = ("speeds", "headings", "frequencies", "motions")  # whose numbers the file states
 
 
 def read_veres(path: Path, depth: float, speed: float) -> RaoTable:
@@ -41,7 +42,7 @@ def read_veres(path: Path, depth: float, speed: float) -> RaoTable:
         next(numbers), next(numbers)  # density and gravity
         _, _, draught = next(numbers), next(numbers), next(numbers)
         centre, _ = next(numbers), next(numbers)
-        counts = [round(next(numbers)) for _ in range(4)]
+        counts = [_count(next(numbers), what, path) for what in COUNTS]
         for _ in range(counts[0]):
             own, _, _, aft, above = (next(numbers) for _ in range(5))
             waves, values = _one_speed(numbers, counts[1:], path)
@@ -65,13 +66,23 @@ def read_veres(path: Path, depth: float, speed: float) -> RaoTable:
 
 
 def _numbers(lines: list[str], path: Path) -> Iterator[float]:
-    """Yield all numbers of lines."""
+    """Yield all numbers of lines. Raises BadInput."""
     for number, line in enumerate(lines, TEXT_LINES + 1):
         for word in line.split():
             try:
-                yield float(word.replace("D", "E"))
+                value = float(word.replace("D", "E"))
             except ValueError:
-                raise BadInput(f"{path}:{number}: {word!r} is not a number") from None
+                value = np.nan
+            if not np.isfinite(value):
+                raise BadInput(f"{path}:{number}: {word!r} is not a number")
+            yield value
+
+
+def _count(number: float, what: str, path: Path) -> int:
+    """Return how many speeds, headings, frequencies or motions follow in a file."""
+    if number < 1.0 or number != round(number):
+        raise BadInput(f"{path}: {number:g} {what}; allowed is a whole number from 1 on")
+    return round(number)
 
 
 def _one_speed(

@@ -9,11 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.arguments import short_repr
 from boatsim.errors import BadInput
 from boatsim.hydrodynamics.axes import SIGNS, excitation_to_sname, to_sname
 from boatsim.hydrodynamics.headings import on_starboard_side
 from boatsim.hydrodynamics.mean_drift import DRIFT_AXES
-from boatsim.hydrodynamics.rao_table import RaoTable, complete_table
+from boatsim.hydrodynamics.rao_table import Complex, RaoTable, complete_table, refuse_holes
+from boatsim.hydrodynamics.wamit_pairs import COLUMNS as PAIR_COLUMNS
 from boatsim.hydrodynamics.wamit_pairs import pairs_next_to, wamit_pairs
 from boatsim.physics.coefficients.memory_fit import estimated_infinite_added_mass
 from boatsim.physics.coefficients.table import Coefficients
@@ -21,6 +23,7 @@ from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.signals import Array
 
 COLUMNS = 5  # of NAME.1: period, row, column, added mass, damping; the last only of finite periods
+STIFFNESS_COLUMNS = 3  # of NAME.hst: row, column, stiffness
 RAO_COLUMNS = 7  # of NAME.2 to .4: period, direction, axis, modulus, phase, real, imaginary part
 DRIFT_COLUMNS = 8  # of NAME.8: period, two directions, axis, modulus, phase, real, imaginary part
 SAME_DIRECTION = 1e-3  # [deg] between directions that are the same
@@ -58,13 +61,11 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
     Raises:
         BadInput: A file is missing or has another form.
     """
-    rows = _read_numbers(path)
+    rows = _read_numbers(path, COLUMNS - 1)
     infinite = np.full((6, 6), np.nan)
     found: dict[float, Array] = {}
     for row in rows:
-        period, i, j = row[0], int(row[1]) - 1, int(row[2]) - 1
-        if not (0 <= i < 6 and 0 <= j < 6):
-            raise BadInput(f"{path}: motion {max(i, j) + 1}; only one body of six is read")
+        period, i, j = row[0], _axis(row[1], path), _axis(row[2], path)
         size = scale.density * scale.length ** _power(i, j)
         if period == 0.0:
             infinite[i, j] = row[3] * size
@@ -87,7 +88,7 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
     drift, drift_of = _read_drift(path, frequency, heading, scale)
     pairs, file = None, pairs_next_to(path)
     if file is not None:
-        pairs = wamit_pairs(_read_numbers(file), file, scale.density, scale.length)
+        pairs = wamit_pairs(_read_numbers(file, PAIR_COLUMNS), file, scale.density, scale.length)
     return Coefficients(
         source=f"WAMIT, {path.name}",
         density=scale.density,
@@ -113,21 +114,54 @@ def _power(i: int, j: int) -> int:
     return 3 + (i > 2) + (j > 2)
 
 
-def _read_numbers(path: Path) -> list[list[float]]:
-    """Return the rows of numbers of a file, without lines of text."""
+def _read_numbers(path: Path, columns: int) -> list[list[float]]:
+    """Return the rows of numbers of a file, without lines of text.
+
+    Args:
+        path: The file.
+        columns: Least number of columns of a row.
+
+    Raises:
+        BadInput: There is no such file, it has no numbers, or a row has a value that is none.
+    """
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
     found = []
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        try:
-            row = [float(word.replace("D", "E")) for word in line.split()]
-        except ValueError:
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    for number, line in enumerate(lines, 1):
+        words = line.replace("D", "E").split()
+        if not words or not _is_number(words[0]):
             continue  # a header
-        if row:
-            found.append(row)
+        if "*" in line:  # Fortran writes a number that is too long for its columns so
+            raise BadInput(f"{path}:{number}: {short_repr(line.strip())}: a value is no number")
+        if not all(map(_is_number, words)):
+            continue  # a header that begins with a number
+        row = [float(word) for word in words]
+        if row[0] == np.inf:
+            row[0] = -1.0  # the period of frequency zero
+        if not np.isfinite(row).all():
+            raise BadInput(f"{path}:{number}: {short_repr(line.strip())}: a value is no number")
+        if len(row) < columns:
+            raise BadInput(f"{path}:{number}: a row has {len(row)} columns; {columns} are required")
+        found.append(row)
     if not found:
         raise BadInput(f"{path}: the file has no numbers")
     return found
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _axis(number: float, path: Path) -> int:
+    """Return the place of an axis in `AXES` from its number in a file."""
+    if number not in range(1, 7):
+        raise BadInput(f"{path}: motion {number:g}; only one body of six is read")
+    return int(number) - 1
 
 
 def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[Array, Array]:
@@ -137,20 +171,22 @@ def _read_excitation(path: Path, frequency: Array, scale: OutputScale) -> tuple[
         file = path.with_suffix(".2")
     if not file.is_file():
         raise BadInput(f"{path.with_suffix('.3')}: there is neither this file nor {file.name}")
-    table: dict[float, Array] = {}
-    for row in _read_numbers(file):
+    table: dict[float, Complex] = {}
+    for row in _read_numbers(file, RAO_COLUMNS):
         if row[0] <= 0.0:
             continue
         k = int(np.argmin(np.abs(frequency - 2.0 * np.pi / row[0])))
-        values = table.setdefault(row[1], np.zeros((len(frequency), 6), dtype=complex))
-        i = int(row[2]) - 1
+        values = table.setdefault(row[1], np.full((len(frequency), 6), np.nan + 0j))
+        i = _axis(row[2], file)
         size = scale.density * GRAVITY * scale.length ** (2 + (i > 2))
         values[k, i] = (row[5] + 1j * row[6]) * size
     heading = np.array(sorted(table))
-    excitation = np.stack([table[angle] for angle in heading], axis=1)
-    return on_starboard_side(
-        np.radians(-heading), excitation_to_sname(excitation, conjugate=False), file
-    )
+    if not table:
+        raise BadInput(f"{file}: there is no period above 0")
+    excitation: Complex = np.stack([table[angle] for angle in heading], axis=1)
+    refuse_holes(excitation, frequency, np.radians(heading), file)
+    sname = excitation_to_sname(np.nan_to_num(excitation), conjugate=False)
+    return on_starboard_side(np.radians(-heading), sname, file)
 
 
 def read_wamit_operators(path: Path, scale: OutputScale, origin: float) -> RaoTable:
@@ -170,13 +206,9 @@ def read_wamit_operators(path: Path, scale: OutputScale, origin: float) -> RaoTa
     waves, rows = [], []
     motion = path.suffix == ".4"
     found: dict[tuple[float, float], list[complex]] = {}
-    for row in _read_numbers(path):
-        if len(row) < RAO_COLUMNS:
-            raise BadInput(f"{path}: a row has {len(row)} columns; {RAO_COLUMNS} are required")
-        i = int(row[2]) - 1
-        if not 0 <= i < 6:
-            raise BadInput(f"{path}: motion {i + 1}; only one body of six is read")
-        if row[0] <= 0.0 or not np.isfinite(row[0]):
+    for row in _read_numbers(path, RAO_COLUMNS):
+        i = _axis(row[2], path)
+        if row[0] <= 0.0:
             continue  # the limits of frequency zero and infinity
         values = found.setdefault((row[0], row[1]), [complex(np.nan)] * 6)
         size = scale.density * GRAVITY * scale.length ** (2 + (i > 2))
@@ -216,9 +248,7 @@ def _read_drift(
     if not file.is_file():
         return None, ""
     table: dict[float, Array] = {}
-    for row in _read_numbers(file):
-        if len(row) < DRIFT_COLUMNS:
-            raise BadInput(f"{file}: a row has {len(row)} columns; {DRIFT_COLUMNS} are required")
+    for row in _read_numbers(file, DRIFT_COLUMNS):
         i = int(row[3]) - 1
         if row[0] <= 0.0 or abs(row[1] - row[2]) > SAME_DIRECTION or i not in DRIFT_AXES:
             continue
@@ -245,8 +275,8 @@ def _read_restoring(path: Path, scale: OutputScale) -> Array:
     found = np.zeros((6, 6))
     if not path.is_file():
         return found
-    for row in _read_numbers(path):
-        i, j = int(row[0]) - 1, int(row[1]) - 1
+    for row in _read_numbers(path, STIFFNESS_COLUMNS):
+        i, j = _axis(row[0], path), _axis(row[1], path)
         power = 2 + (i > 2) + (j > 2)
         found[i, j] = row[2] * scale.density * GRAVITY * scale.length**power
     return to_sname(found)

@@ -52,9 +52,9 @@ def wamit_pairs(rows: list[list[float]], path: Path, density: float, length: flo
     for row in rows:
         if len(row) < COLUMNS:
             raise BadInput(f"{path}: a row has {len(row)} columns; {COLUMNS} are required")
+        if row[4] not in range(1, 7):
+            raise BadInput(f"{path}: motion {row[4]:g}; only one body of six is read")
         i = int(row[4]) - 1
-        if not 0 <= i < 6:
-            raise BadInput(f"{path}: motion {i + 1}; only one body of six is read")
         if min(row[0], row[1]) <= 0.0 or abs(row[2] - row[3]) > SAME_DIRECTION:
             continue
         waves = (2.0 * np.pi / row[0], 2.0 * np.pi / row[1], -np.radians(row[2]))

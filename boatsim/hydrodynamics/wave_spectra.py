@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name_message
-from boatsim.physics.waves.tabulated import TabulatedSpectrum
+from boatsim.physics.waves.tabulated import TabulatedSpectrum, close_sector
 
 NEEDED = 'spectra of buoys and models need wavespectra: pip install "boatsim[spectra]"'
 WRITERS = {".nc": "to_netcdf", ".swn": "to_swan", ".json": "to_json"}
@@ -85,7 +85,8 @@ def spectrum_of(efth: Any, path: Path) -> TabulatedSpectrum:
         path: File, for messages.
 
     Raises:
-        BadInput: A density is missing or negative, or there are no waves.
+        BadInput: A density is missing or negative, there are no waves, or fewer than four
+            directions.
     """
     frequency = 2.0 * pi * np.asarray(efth.freq, dtype=float)
     order = np.argsort(frequency)
@@ -96,7 +97,9 @@ def spectrum_of(efth: Any, path: Path) -> TabulatedSpectrum:
         toward = (np.radians(np.asarray(efth.dir, dtype=float)) + pi) % (2.0 * pi)
         toward[toward > 2.0 * pi - 1e-6] = 0.0
         direction, first = np.unique(np.round(toward, 9), return_index=True)
-        density = density[:, first]
+        if len(direction) < 4:
+            raise BadInput(f"{path}: {len(direction)} directions; at least four are required")
+        direction, density = close_sector(direction, density[:, first])
     else:
         density = np.asarray(efth, dtype=float) / (2.0 * pi)
     if not np.isfinite(density).all() or np.any(density < 0.0):

@@ -1,6 +1,6 @@
 """A plain table of numbers whose first lines state its conventions.
 
-# key = value             a convention; other lines that begin with # are remarks
+# key = value             a convention, whose keys the reader knows; other lines with # are remarks
 column,column,...
 number,number,...
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.errors import BadInput, unknown_name_message
+from boatsim.errors import BadInput, nearest_hint, unknown_name_message
 from boatsim.physics.signals import Array
 
 MOST_ROWS = 200_000
@@ -81,10 +81,22 @@ def read_stated_table(
             chosen[key] = value
         elif key in given:
             given[key] = _number(value, f"{label}: {key}")
-        else:
+        elif _is_meant(key, [*chosen, *given]):
             raise BadInput(unknown_name_message(f"{label}: convention", key, [*chosen, *given]))
     columns, rows = _rows(lines[begin:], begin, path)
     return StatedTable(path, chosen, given, columns, rows)
+
+
+def _is_meant(key: str, known: Sequence[str]) -> bool:
+    """Return whether the text before "=" is probably meant as a convention, and no remark.
+
+    It is a word that resembles the name of a convention, or begins with such a name and further
+    words.
+    """
+    first, _, others = key.partition(" ")
+    if not others:
+        return bool(nearest_hint(key, known))
+    return len(first) > 1 and first in known
 
 
 def _number(text: str, label: str) -> float:
@@ -99,7 +111,10 @@ def _number(text: str, label: str) -> float:
 
 def _rows(lines: list[str], begin: int, path: Path) -> tuple[tuple[str, ...], Array]:
     """Return the names of the columns and the numbers (R, C)."""
-    table = [row for row in csv.reader(lines) if row]
+    try:
+        table = [row for row in csv.reader(lines) if row]
+    except csv.Error as error:
+        raise BadInput(f"{path}: no CSV file: {error}") from None
     if len(table) > MOST_ROWS:
         raise BadInput(f"{path}: more than {MOST_ROWS} rows")
     if len(table) < 2:

@@ -16,10 +16,16 @@ from boatsim.cli import app
 from boatsim.errors import BadInput
 from boatsim.hydrodynamics.mss import read_mss
 from boatsim.hydrodynamics.rao_csv import read_rao_csv
-from boatsim.hydrodynamics.rao_table import Complex, RaoTable, at_origin, opposite_axes
+from boatsim.hydrodynamics.rao_table import (
+    Complex,
+    RaoTable,
+    at_origin,
+    complete_table,
+    opposite_axes,
+)
 from boatsim.hydrodynamics.veres import read_veres
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit, read_wamit_operators
-from boatsim.physics.base import AXES
+from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.files import read_coefficients, read_wave_loads
 from tests.physics.coefficients.test_output_files import write_wamit
 
@@ -217,6 +223,9 @@ HEAD = "direction_deg,period_s,heave_m_per_m,heave_phase_deg\n"
         ("# speed = fast\n" + HEAD + LINE, "speed = 'fast'; a number is required"),
         (HEAD + "0,5,x,0\n", "ship.csv:2: heave_m_per_m = 'x'; a number is required"),
         (HEAD + "0,5,nan,0\n", "heave_m_per_m = 'nan'; a number is required"),
+        ("# speed of the ship = 3\n" + HEAD + LINE, "convention 'speed of the ship' does not"),
+        ("# speed = -3\n" + HEAD + LINE, "ship.csv: speed = -3 m/s; allowed is 0 and above"),
+        (HEAD + "0,5," + "1" * 140_000 + ",0\n", "ship.csv: no CSV file"),
         (HEAD + "0,5\n", "ship.csv:2: 2 columns; 4 are required"),
         (HEAD + LINE + "0,8,1,0\n", "0.7854 rad/s lacks 90 deg"),
         (HEAD + "0,5,1,0\n0,6,1,0\n", "at least three frequencies"),
@@ -237,6 +246,98 @@ def test_a_table_of_another_form_is_refused(tmp_path: Path, text: str, message: 
     with pytest.raises(BadInput) as caught:
         read_rao_csv(path, 0.0)
     assert message in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_remarks_with_an_equals_sign_are_no_conventions(tmp_path: Path) -> None:
+    head = "# made with dt = 0.1\n# dt = 0.1\n# x forward, w = omega\n# = 5\n# x = 1\n"
+    found = read_rao_csv(write_csv(tmp_path / "ship.csv", follower, head), 0.0)
+    assert found.point == (1.0, 0.0)
+
+
+def waves_of_follower() -> tuple[Array, Complex]:
+    """Rows of a complete table: frequency and direction (R, 2), and motions (R, 6)."""
+    waves, rows = [], []
+    for w in FREQUENCIES:
+        for heading in np.radians(DIRECTIONS):
+            waves.append((w, heading))
+            rows.append(follower(w, heading))
+    return np.array(waves), np.array(rows)
+
+
+def test_an_axis_with_holes_is_refused() -> None:
+    waves, rows = waves_of_follower()
+    rows[:, 5] = np.nan  # an axis that the table does not have
+    _, _, values = complete_table(waves, rows, Path("ship.4"))
+    assert np.isnan(values[..., 5]).all() and np.isfinite(values[..., :5]).all()
+    for hole in (np.nan, np.inf):
+        rows[9, 2] = hole
+        words = "ship.4: heave has no finite value at 0.4 rad/s and 60 deg"
+        with pytest.raises(BadInput, match=words):
+            complete_table(waves, rows, Path("ship.4"))
+    waves[3, 1] = np.nan
+    with pytest.raises(BadInput, match=r"ship.4: a frequency or a direction is not a number"):
+        complete_table(waves, rows, Path("ship.4"))
+
+
+def test_a_number_that_overflows_its_columns_is_refused(tmp_path: Path) -> None:
+    lines = []
+    for period in (4, 5, 6):
+        for direction in (0, 45, 90, 135, 180):
+            lines.append(f"{period} {direction} 3 1.0 0.1 0.5 0.5")
+    path = tmp_path / "ship.4"
+    path.write_text("\n".join(lines))
+    assert read_wamit_operators(path, WATER, 0.0).axes == ("heave",)
+    lines[4] = "4 180 3 ******* 0.1 ******* 0.5"
+    path.write_text("\n".join(lines))
+    with pytest.raises(BadInput, match=r"ship.4:5: .* a value is no number"):
+        read_wamit_operators(path, WATER, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("2 7 3 6", "2 0 3 6", "0 headings; allowed is a whole number from 1 on"),
+        ("2 7 3 6", "2 7 2.5 6", "2.5 frequencies; allowed is a whole number from 1 on"),
+        ("2 7 3 6", "inf 7 3 6", "ship.re1:10: 'inf' is not a number"),
+        ("3.0 2.5", "nan 2.5", "ship.re1:9: 'nan' is not a number"),
+    ],
+)
+def test_damaged_output_of_veres_is_refused(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    path = write_veres(tmp_path / "ship.re1")
+    path.write_text(path.read_text().replace(old, new, 1))
+    with pytest.raises(BadInput, match=message):
+        read_veres(path, 0.0, 0.0)
+
+
+def write_mss(path: Path, phases: int = 6, velocities: tuple[float, ...] = (0.0,)) -> Path:
+    """Vessel structure of MSS whose arrays have one speed."""
+    size, phase = np.empty(6, dtype=object), np.empty(phases, dtype=object)
+    for tables in (size, phase):
+        for i in range(len(tables)):
+            tables[i] = np.ones((len(FREQUENCIES), len(DIRECTIONS)))
+    operators = {"amp": size, "phase": phase, "w": FREQUENCIES}
+    vessel = {"headings": np.radians(DIRECTIONS), "motionRAO": operators}
+    savemat(path, {"vessel": {**vessel, "velocities": velocities}}, do_compression=True)
+    return path
+
+
+def test_damaged_files_of_mss_are_refused(tmp_path: Path) -> None:
+    path = write_mss(tmp_path / "ship.mat")
+    assert read_mss(path, 0.0, 0.0).axes == AXES
+    whole = path.read_bytes()
+    middle = len(whole) // 2
+    for part in (b"", whole[:100], whole[:150], whole[:-30], whole[:middle] + whole[middle + 9 :]):
+        path.write_bytes(part)
+        with pytest.raises(BadInput, match="ship.mat: there is no structure `vessel`"):
+            read_mss(path, 0.0, 0.0)
+    write_mss(path, phases=3)
+    with pytest.raises(BadInput, match="ship.mat: 6 axes of amp and 3 of phase"):
+        read_mss(path, 0.0, 0.0)
+    write_mss(path, velocities=(0.0, 5.0))
+    with pytest.raises(BadInput, match="amp of surge has 1 of the 2 velocities"):
+        read_mss(path, 0.0, 5.0)
 
 
 def test_output_of_another_form_is_refused(tmp_path: Path) -> None:
@@ -278,6 +379,9 @@ def test_the_command_writes_loads_that_the_effect_reads(tmp_path: Path) -> None:
     assert found.drift is None and found.excitation.shape == (3, 7, 6)
     with pytest.raises(BadInput, match=r"radiation.csv: the file is missing"):
         read_coefficients(tmp_path / "hydrodynamics")
+    (tmp_path / "hydrodynamics" / "drift_pairs.csv").write_text("of another program")
+    code, printed = invoked(path, "--vessel", "otter")
+    assert code == 0 and "renamed to drift_pairs.csv.old" in printed
 
 
 def test_the_command_notes_what_it_does_not_use(tmp_path: Path) -> None:

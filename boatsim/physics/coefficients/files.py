@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.files import read_toml, replace_file, toml_value
+from boatsim.files import read_csv, read_toml, replace_file, toml_value
 from boatsim.physics.coefficients.memory_fit import SETS, MemoryModel
 from boatsim.physics.coefficients.pair_files import NAME as PAIRS
 from boatsim.physics.coefficients.pair_files import read_drift_pairs, write_drift_pairs
@@ -31,6 +31,7 @@ from boatsim.physics.signals import AXES, Array
 HEADER = "coefficients.toml"
 RADIATION, EXCITATION = "radiation.csv", "excitation.csv"
 MEMORY, DRIFT = "memory.csv", "drift.csv"
+UNUSED = ".old"  # end of the name of a file that is no longer read
 FILES = (HEADER, RADIATION, EXCITATION, MEMORY, DRIFT, PAIRS)
 AXES_TEXT = "SNAME: x forward, y starboard, z down"
 PHASE_TEXT = (
@@ -63,12 +64,16 @@ MODEL_DIGITS = 13  # of the memory, whose sum of N / b is zero
 MOST_ROWS = 200_000  # of a table; a hull needs some hundred
 
 
-def write_coefficients(folder: Path, found: Coefficients) -> None:
+def write_coefficients(folder: Path, found: Coefficients) -> list[str]:
     """Write hydrodynamic coefficients to a folder, which is made if necessary.
 
     Args:
         folder: The folder.
         found: The coefficients.
+
+    Returns:
+        Names of the files of drift that the folder had and these coefficients have not. They are
+        kept, with the end `.old` to their name.
     """
     folder.mkdir(parents=True, exist_ok=True)
     header = {
@@ -118,15 +123,18 @@ def write_coefficients(folder: Path, found: Coefficients) -> None:
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
     if found.memory is not None:
         _write_table(folder / MEMORY, MEMORY_COLUMNS, _memory_rows(found.memory))
-    _write_drift(folder, found)
+    return _write_drift(folder, found)
 
 
-def write_wave_loads(folder: Path, found: WaveLoads) -> None:
+def write_wave_loads(folder: Path, found: WaveLoads) -> list[str]:
     """Write wave loads alone to a folder, which is made if necessary.
 
     Args:
         folder: The folder.
         found: The loads.
+
+    Returns:
+        Names of the files of drift that the folder had, as `write_coefficients` does.
 
     Raises:
         BadInput: The folder contains the coefficients of a hull.
@@ -146,19 +154,25 @@ def write_wave_loads(folder: Path, found: WaveLoads) -> None:
     with replace_file(folder / HEADER) as path:
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
-    _write_drift(folder, found)
+    return _write_drift(folder, found)
 
 
-def _write_drift(folder: Path, found: Coefficients | WaveLoads) -> None:
-    """Write the drift, and remove that of earlier coefficients if there is none."""
-    if found.drift is None:
-        (folder / DRIFT).unlink(missing_ok=True)
-    else:
+def _write_drift(folder: Path, found: Coefficients | WaveLoads) -> list[str]:
+    """Write the drift, and rename a file of other coefficients if there is none.
+
+    Returns:
+        Names of the files that were renamed.
+    """
+    renamed = []
+    for name, values in ((DRIFT, found.drift), (PAIRS, found.drift_pairs)):
+        if values is None and (folder / name).is_file():
+            (folder / name).replace(folder / f"{name}{UNUSED}")
+            renamed.append(name)
+    if found.drift is not None:
         _write_table(folder / DRIFT, DRIFT_COLUMNS, _drift_rows(found, found.drift))
-    if found.drift_pairs is None:
-        (folder / PAIRS).unlink(missing_ok=True)
-    else:
+    if found.drift_pairs is not None:
         write_drift_pairs(folder / PAIRS, found.drift_pairs)
+    return renamed
 
 
 def _rounded(values: Array) -> list[float]:
@@ -325,8 +339,7 @@ def _read_table(path: Path, columns: Sequence[str]) -> list[list[str]]:
     """Return the rows of a table with the given columns."""
     if not path.is_file():
         raise BadInput(f"{path}: the file is missing")
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(file))
+    rows = read_csv(path)
     if not rows or tuple(rows[0]) != tuple(columns):
         raise BadInput(f"{path}: the first line must be {','.join(columns)}")
     if len(rows) > MOST_ROWS:

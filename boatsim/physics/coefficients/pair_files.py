@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.files import replace_file
+from boatsim.files import read_csv, replace_file
 from boatsim.physics.coefficients.table import DriftPairs
 from boatsim.physics.signals import AXES, ROTATIONS
 
@@ -60,8 +60,7 @@ def read_drift_pairs(path: Path) -> DriftPairs:
         BadInput: A line has another form, a pair is missing, or the drift of a wave with itself is
             not real.
     """
-    with path.open(encoding="utf-8", newline="") as file:
-        lines = list(csv.reader(file))
+    lines = read_csv(path)
     if not lines or tuple(lines[0]) != COLUMNS:
         raise BadInput(f"{path}: the first line must be {','.join(COLUMNS)}")
     if len(lines) > MOST_ROWS:

@@ -42,7 +42,8 @@ class HullSections:
         """Return the particulars of the hull, named as the parameters of strip wave loads.
 
         Lengths are in m and coefficients without unit. Breadth and coefficients are those of one
-        hull of a catamaran.
+        hull of a catamaran. A coefficient is at most 1, also for a hull that is wider below the
+        waterline than on it: its sections have their area all the same.
         """
         hulls = 2.0 if self.spacing > 0.0 else 1.0
         length, beam = self.bow - self.stern, float(self.breadth.max()) / hulls
@@ -52,8 +53,8 @@ class HullSections:
             "centre": 0.5 * (self.bow + self.stern),
             "hull_spacing": self.spacing,
             "hull_beam": beam,
-            "block_coefficient": self.whole.volume / (box * self.depth),
-            "waterplane_coefficient": self.whole.area / box,
+            "block_coefficient": min(1.0, self.whole.volume / (box * self.depth)),
+            "waterplane_coefficient": min(1.0, self.whole.area / box),
             "waterplane_gyradius": float(np.sqrt(self.whole.second[0, 0] / self.whole.area)),
             "flotation": float(self.whole.flotation[0]),
             "buoyancy": float(self.whole.centre[0]),
@@ -73,7 +74,8 @@ def hull_sections(mesh: ClosedMesh, strips: int, label: str) -> HullSections:
         label: Name of the mesh in messages.
 
     Raises:
-        BadInput: The hull is not in the water, or its waterplane has no area.
+        BadInput: The hull is not in the water, its waterplane has no area, or it lies on one side
+            of the centre plane.
     """
     whole = submerged_part(mesh, 0.0)
     if not (whole.volume > 0.0 and whole.area > 0.0):
@@ -82,6 +84,15 @@ def hull_sections(mesh: ClosedMesh, strips: int, label: str) -> HullSections:
             f"{whole.area:.4g} m^2 at this draught; allowed is a draught below its height"
         )
     wet = wetted_triangles(mesh.corners)
+    port, starboard = float(wet[:, :, 1].min()), float(wet[:, :, 1].max())
+    near = ASIDE * (starboard - port)
+    if port > -near or starboard < near:
+        side = "starboard" if port > -near else "port"
+        nearest, farthest = sorted((abs(port), abs(starboard)))
+        raise BadInput(
+            f"{label}: the hull lies to {side} of the centre plane, from {nearest:.4g} to "
+            f"{farthest:.4g} m; allowed is a whole hull about y = 0, or two hulls"
+        )
     stern, bow = float(wet[:, :, 0].min()), float(wet[:, :, 0].max())
     edges = np.linspace(stern, bow, strips + 1)
     plane, volume = [0.0], [0.0]
@@ -178,7 +189,8 @@ def sections_of_file(
         strips: Number of strips.
 
     Raises:
-        BadInput: It cannot be read, is not closed, or does not float.
+        BadInput: It cannot be read, is not closed, does not float, or lies on one side of the
+            centre plane.
     """
     mesh = mesh_of_file(path, scale).moved(-origin, 0.0, draught)
     return hull_sections(mesh, strips, path)

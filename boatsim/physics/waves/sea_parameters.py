@@ -10,7 +10,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.debugging import interpreted
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.noise import seeded_realisation
-from boatsim.physics.param import name_code_parameter, param
+from boatsim.physics.param import UNSET, name_code_parameter, param
 from boatsim.physics.terms import index_code
 from boatsim.physics.waves.dispersion import wave_number
 from boatsim.physics.waves.field import WaveField
@@ -27,7 +27,7 @@ class SeaParameters(Effect):
     """Parameters of a sea, its elevation, and its realisation by a seed.
 
     A spectrum of a file, `spectrum` = "tabulated", has the height of the file if none is given, and
-    its directions are turned by `toward`.
+    its directions are turned by `toward`. Other seas without a height are calm.
     """
 
     paths: ClassVar[tuple[str, ...]] = ("spectrum_file",)
@@ -35,7 +35,11 @@ class SeaParameters(Effect):
     spectrum: str = "bretschneider"  # one of `sea_state.SPECTRA`
     spectrum_file: str = ""  # of spectrum = "tabulated"
     significant_height: float = param(
-        0.0, low=0.0, high=30.0, unit="m", words="four times the rms of the elevation; 0: calm"
+        UNSET,
+        low=0.0,
+        high=30.0,
+        unit="m",
+        words="four times the rms of the elevation; 0: calm; default: that of spectrum_file",
     )
     modal_period: float = param(
         7.5, low=0.2, high=40.0, unit="s", words="period at the peak of the elevation spectrum"
@@ -85,6 +89,8 @@ class SeaParameters(Effect):
         if self.spectrum == "tabulated":
             self._use_file()
             return
+        if not self.has_value("significant_height"):
+            object.__setattr__(self, "significant_height", 0.0)
         if self.spectrum_file:
             raise BadInput(
                 f'{self.name}: spectrum_file applies to spectrum = "tabulated"; here it is '
@@ -112,7 +118,7 @@ class SeaParameters(Effect):
             raise BadInput(
                 f"{self.name}.spreading = {self.spreading:g}; {self.spectrum_file} has directions"
             )
-        if self.significant_height == 0.0:
+        if not self.has_value("significant_height"):
             object.__setattr__(self, "significant_height", found.significant_height)
         table = spectrum_table(found, int(self.components), self.cut)
         shares = np.array(table[4:]).reshape(int(self.components), -1)[:, 0]

@@ -13,18 +13,21 @@ from boatsim.physics.debugging import interpreted
 from boatsim.physics.signals import Array
 from boatsim.physics.stated_table import ANGLES
 from boatsim.physics.waves.sea_parameters import SeaParameters
-from boatsim.physics.waves.sea_state import NO_TABLE, sea_state, spectral_density
+from boatsim.physics.waves.sea_state import NO_TABLE, energy_above, sea_state, spectral_density
 from boatsim.physics.waves.spreading import cosine_power
-from boatsim.physics.waves.tabulated import TabulatedSpectrum, read_spectrum
+from boatsim.physics.waves.tabulated import CLOSE, TabulatedSpectrum, read_spectrum
 
-FREQUENCIES, DIRECTIONS = 200, 72  # a direction each 5 degrees
+FREQUENCIES, DIRECTIONS = 200, 72  # of a sea; a direction each 5 degrees
+STEP = 2.0 * pi / DIRECTIONS  # [rad]
 DIGITS = 6  # significant digits of a density
 
 
 def spectrum_of_seas(seas: Sequence[SeaParameters]) -> TabulatedSpectrum:
     """Return the sum of the spectra of seas.
 
-    Waves that all run alike have their energy in one direction of the grid.
+    It has the frequencies of each sea, so that none is coarser than alone. The energy of a sea is
+    that of its significant height below its cut. Waves that all run alike have their energy in one
+    direction of the grid.
 
     Args:
         seas: The seas, with a height each.
@@ -38,16 +41,16 @@ def spectrum_of_seas(seas: Sequence[SeaParameters]) -> TabulatedSpectrum:
         own = read_spectrum(seas[0].spectrum_file)
         if not len(own.direction):
             return _scaled(own, seas[0])
-    ranges = [_range(sea) for sea in seas]
-    frequency: Array = np.linspace(
-        min(low for low, _ in ranges), max(high for _, high in ranges), FREQUENCIES
-    )
+    grids = [_frequencies(sea) for sea in seas]
+    frequency = _apart(np.concatenate(grids))
     # a direction of the grid is that of the first sea, so that its waves are in it
-    steps = 2.0 * pi / DIRECTIONS * np.arange(DIRECTIONS)
+    steps = STEP * np.arange(DIRECTIONS)
     direction: Array = np.sort((seas[0].toward + steps) % (2.0 * pi))
-    density = np.zeros((FREQUENCIES, DIRECTIONS))
-    for sea in seas:
-        density += _density(sea, frequency, direction)
+    density = np.zeros((len(frequency), DIRECTIONS))
+    for sea, grid in zip(seas, grids, strict=True):
+        own = TabulatedSpectrum(frequency, direction, _density(sea, grid, frequency, direction))
+        rms = 0.25 * own.significant_height
+        density += own.density * (_energy(sea, grid) / rms**2)
     return TabulatedSpectrum(frequency, direction, density)
 
 
@@ -57,25 +60,47 @@ def _scaled(found: TabulatedSpectrum, sea: SeaParameters) -> TabulatedSpectrum:
     return TabulatedSpectrum(found.frequency, found.direction, factor * found.density)
 
 
-def _range(sea: SeaParameters) -> tuple[float, float]:
-    """Return the lowest and the highest frequency of a sea [rad/s]."""
+def _frequencies(sea: SeaParameters) -> Array:
+    """Return the frequencies of a sea (F,) [rad/s], up to its cut."""
     if sea.spectrum == "regular":
         raise BadInput(f"{sea.name}: a regular wave has no spectrum")
     if sea.spectrum == "tabulated":
-        found = read_spectrum(sea.spectrum_file)
-        return float(found.frequency[0]), float(found.frequency[-1])
+        frequency = read_spectrum(sea.spectrum_file).frequency
+        if 0.0 < sea.cut < frequency[-1]:
+            return np.append(frequency[frequency < sea.cut], sea.cut)
+        return frequency
     own = interpreted(sea_state)(sea.values(), NO_TABLE, 0)
-    return own.low, own.low + own.number * own.width
+    return np.linspace(own.low, own.low + own.number * own.width, FREQUENCIES)
 
 
-def _density(sea: SeaParameters, frequency: Array, direction: Array) -> Array:
-    """Return the density (F, D) of a sea [m^2 s/rad^2]."""
-    low, high = _range(sea)
-    inside = (frequency >= low * (1.0 - 1e-9)) & (frequency <= high * (1.0 + 1e-9))
+def _apart(frequency: Array) -> Array:
+    """Return frequencies, increasing, without those that a reader of the file takes as the same."""
+    ordered = np.sort(frequency)
+    least = 2.0 * CLOSE * max(1.0, float(ordered[-1]))
+    kept = [ordered[0]]
+    for one in ordered[1:]:
+        if one > kept[-1] + least:
+            kept.append(one)
+    return np.array(kept)
+
+
+def _energy(sea: SeaParameters, grid: Array) -> float:
+    """Return the mean square of the elevation of a sea below its highest frequency [m^2]."""
     if sea.spectrum == "tabulated":
         found = _scaled(read_spectrum(sea.spectrum_file), sea)
+        return float(np.trapezoid(np.interp(grid, found.frequency, found.over_frequency), grid))
+    frequency, above = energy_above(sea.values())
+    share = 1.0 - float(np.interp(grid[-1], frequency, above))
+    return share * sea.significant_height**2 / 16.0
+
+
+def _density(sea: SeaParameters, grid: Array, frequency: Array, direction: Array) -> Array:
+    """Return the density (F, D) of a sea up to a factor, 0 outside the grid of its frequencies."""
+    inside = (frequency >= grid[0] * (1.0 - 1e-9)) & (frequency <= grid[-1] * (1.0 + 1e-9))
+    if sea.spectrum == "tabulated":
+        found = read_spectrum(sea.spectrum_file)
         if len(found.direction):
-            return _turned(found, sea.toward, frequency, direction)
+            return _turned(found, sea.toward, frequency, direction) * inside[:, None]
         plain = np.interp(frequency, found.frequency, found.density)
     else:
         own = interpreted(sea_state)(sea.values(), NO_TABLE, 0)
@@ -85,17 +110,22 @@ def _density(sea: SeaParameters, frequency: Array, direction: Array) -> Array:
     if sea.spreading > 0.0:
         share = np.asarray(cosine_power(off, sea.spreading))
     else:
-        share[np.argmin(np.abs(off))] = DIRECTIONS / (2.0 * pi)
+        share[np.argmin(np.abs(off))] = 1.0 / STEP
     return np.asarray(np.outer(np.where(inside, plain, 0.0), share))
 
 
 def _turned(found: TabulatedSpectrum, by: float, frequency: Array, direction: Array) -> Array:
-    """Return the density of a spectrum, whose directions are turned, on another grid."""
-    around = np.append(found.direction, found.direction[0] + 2.0 * pi)
-    whole = np.concatenate([found.density, found.density[:, :1]], axis=1)
-    angle = (direction - by - around[0]) % (2.0 * pi) + around[0]
-    over = np.array([np.interp(angle, around, row) for row in whole])
-    columns = [np.interp(frequency, found.frequency, column, 0.0, 0.0) for column in over.T]
+    """Return the density of a spectrum, whose directions are turned, on another grid.
+
+    A direction of the grid has the mean density of its step, so that no narrow sea is lost.
+    """
+    edges = direction[0] + STEP * (np.arange(DIRECTIONS + 1) - 0.5)
+    own = found.direction + by
+    points = np.union1d(edges, (own - edges[0]) % (2.0 * pi) + edges[0])
+    over = np.array([np.interp(points, own, row, period=2.0 * pi) for row in found.density])
+    parts = 0.5 * (over[:, 1:] + over[:, :-1]) * np.diff(points)
+    cells = np.add.reduceat(parts, np.searchsorted(points, edges[:-1]), axis=1) / STEP
+    columns = [np.interp(frequency, found.frequency, column, 0.0, 0.0) for column in cells.T]
     return np.stack(columns, axis=1)
 
 

@@ -32,6 +32,11 @@ DIRECTIONAL = {
 SHARES = 32
 FINE = 16  # points of a direction between two of the table, by which its energy is integrated
 CLOSE = 1e-5  # relative difference of frequencies and [rad] of directions that are the same
+SAME_DENSITY = 1e-6  # relative difference of densities that are the same
+# Directions cover a sector if the step from its end to its begin is more than this multiple of
+# every other step: a table of the whole circle that lacks one of its directions has a step twice
+# as wide as the others, and one with finer steps about its peak has several of the widest
+GAP = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +69,34 @@ class TabulatedSpectrum:
         return float(4.0 * np.sqrt(np.trapezoid(self.over_frequency, self.frequency)))
 
 
+def close_sector(direction: Array, density: Array) -> tuple[Array, Array]:
+    """Return directions and density with the density 0 outside the sector that they cover.
+
+    The density falls to 0 within the step next to each end, so that its integral over a sector
+    with equal steps is the sum over its directions times the step. Directions of the whole circle
+    are returned as they are.
+
+    Args:
+        direction: Directions (D,) [rad], increasing, within one turn.
+        density: Density (F, D).
+    """
+    steps = np.diff(np.append(direction, direction[0] + 2.0 * pi))
+    widest = int(np.argmax(steps))
+    if len(direction) < 3 or steps[widest] <= GAP * np.delete(steps, widest).max():
+        return direction, density
+    count = len(direction)
+    half = 0.5 * steps[widest]
+    after_end = direction[widest] + min(half, steps[widest - 1])
+    before_begin = direction[widest] + steps[widest] - min(half, steps[(widest + 1) % count])
+    added = [after_end]
+    if before_begin - after_end > CLOSE:
+        added.append(before_begin)
+    angles = np.append(direction, added) % (2.0 * pi)
+    order = np.argsort(angles)
+    empty = np.zeros((len(density), len(added)))
+    return angles[order], np.concatenate([density, empty], axis=1)[:, order]
+
+
 def read_spectrum(path: str | Path) -> TabulatedSpectrum:
     """Read a spectrum from a file; a second call returns the same object.
 
@@ -71,8 +104,8 @@ def read_spectrum(path: str | Path) -> TabulatedSpectrum:
         path: The file.
 
     Raises:
-        BadInput: A line has another form, a direction of a frequency is missing, or there are no
-            waves.
+        BadInput: A line has another form, a direction of a frequency is missing or stands twice
+            with different densities, or there are no waves.
     """
     file = Path(path)
     if not file.is_file():
@@ -90,8 +123,17 @@ def _read_spectrum(path: Path, _: int) -> TabulatedSpectrum:
     density = _density(table, direction is not None)
     if np.any(density < 0.0):
         raise BadInput(f"{path}: a density is negative; allowed is 0 and above")
+    # programs of time series write the mean level as a frequency of 0
+    steady = frequency == 0.0
+    if np.any(density[steady] > 0.0):
+        raise BadInput(f"{path}: the density at the frequency 0 is not 0; waves have none there")
+    frequency, density = frequency[~steady], density[~steady]
+    if direction is not None:
+        direction = direction[~steady]
+    if len(frequency) < 3 or frequency.min() < 0.0:
+        raise BadInput(f"{path}: at least three frequencies above 0 are required")
     waves = _different(frequency)
-    if len(waves) < 3 or waves[0] < 0.0:
+    if len(waves) < 3:
         raise BadInput(f"{path}: at least three frequencies above 0 are required")
     if direction is None:
         if len(waves) != len(frequency):
@@ -137,14 +179,20 @@ def _directional(
     grid = np.full((len(waves), len(directions)), np.nan)
     for w, direction, value in zip(frequency, angle, density, strict=True):
         k = int(np.argmin(np.abs(waves - w)))
-        grid[k, int(np.argmin(np.abs(directions - direction)))] = value
+        d = int(np.argmin(np.abs(directions - direction)))
+        if not (np.isnan(grid[k, d]) or np.isclose(value, grid[k, d], SAME_DENSITY, 0.0)):
+            raise BadInput(
+                f"{path}: {waves[k]:.4g} rad/s and {np.degrees(directions[d]):.4g} deg stand "
+                "twice, with different densities"
+            )
+        grid[k, d] = value
     if np.isnan(grid).any():
         k, d = np.argwhere(np.isnan(grid))[0]
         raise BadInput(
             f"{path}: every frequency needs the same directions; {waves[k]:.4g} rad/s lacks "
             f"{np.degrees(directions[d]):.4g} deg"
         )
-    return TabulatedSpectrum(waves, directions, grid)
+    return TabulatedSpectrum(waves, *close_sector(directions, grid))
 
 
 @lru_cache(maxsize=16)
@@ -168,28 +216,43 @@ def spectrum_table(found: TabulatedSpectrum, components: int, cut: float) -> tup
     density = np.interp(points, frequency, plain)
     below = np.append(0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(points)))
     total = float(np.trapezoid(plain, frequency))
-    share = np.diff(np.interp(edges, points, below)) / total
-    middle = 0.5 * (edges[1:] + edges[:-1])
     rows = np.zeros((components, SHARES + 2))
-    rows[:, 0] = share
+    rows[:, 0] = np.diff(np.interp(edges, points, below)) / total
     if len(found.direction):
-        for i, w in enumerate(middle):
-            rows[i, 1:] = _direction_shares(found, float(w))
+        for i, energy in enumerate(_energy_of_cells(found, points, edges)):
+            rows[i, 1:] = _direction_shares(found.direction, energy)
     head = (float(components), float(edges[0]), float(edges[1] - edges[0]), float(SHARES))
     return (*head, *rows.ravel().tolist())
 
 
-def _direction_shares(found: TabulatedSpectrum, frequency: float) -> Array:
+def _energy_of_cells(found: TabulatedSpectrum, points: Array, edges: Array) -> Array:
+    """Return the integral of a spectrum over each cell of frequencies (C, D), by direction.
+
+    Args:
+        found: The spectrum.
+        points: Its frequencies and the edges of all cells, between which its density is linear.
+        edges: Edges of the cells (C + 1,).
+    """
+    columns = [np.interp(points, found.frequency, column) for column in found.density.T]
+    density = np.stack(columns, axis=1)
+    parts = 0.5 * (density[1:] + density[:-1]) * np.diff(points)[:, None]
+    # a sum of each cell by itself: differences of a long sum would leave rounding where it is 0
+    first = np.searchsorted(points, edges[:-1])
+    return np.asarray(np.add.reduceat(parts, first, axis=0))
+
+
+def _direction_shares(direction: Array, energy: Array) -> Array:
     """Return the directions below which the shares sin^2(pi j / 2 n) of the energy lie.
 
-    They begin where the density is least, so that no share lies on both sides of it.
+    They begin where the energy is least, so that no share lies on both sides of it.
+
+    Args:
+        direction: Directions of the spectrum (D,) [rad].
+        energy: Energy of the waves of a cell per direction (D,).
     """
-    k = int(np.clip(np.searchsorted(found.frequency, frequency) - 1, 0, len(found.frequency) - 2))
-    part = (frequency - found.frequency[k]) / (found.frequency[k + 1] - found.frequency[k])
-    density = (1.0 - part) * found.density[k] + part * found.density[k + 1]
-    first = int(np.argmin(density))
-    angle = np.append(found.direction[first:], found.direction[: first + 1] + 2.0 * pi)
-    value = np.append(density[first:], density[: first + 1])
+    first = int(np.argmin(energy))
+    angle = np.append(direction[first:], direction[: first + 1] + 2.0 * pi)
+    value = np.append(energy[first:], energy[: first + 1])
     fine = np.interp(
         np.linspace(0.0, len(angle) - 1.0, FINE * (len(angle) - 1) + 1),
         np.arange(len(angle)),

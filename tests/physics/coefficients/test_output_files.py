@@ -111,9 +111,15 @@ def test_incomplete_drift_of_wamit_is_refused(tmp_path: Path) -> None:
 
 
 def test_coefficients_without_drift_leave_none_of_earlier_ones(tmp_path: Path) -> None:
-    write_coefficients(tmp_path / "copy", own())
-    write_coefficients(tmp_path / "copy", replace(own(), drift=None))
-    assert read_coefficients(tmp_path / "copy").drift is None
+    assert write_coefficients(tmp_path / "copy", own()) == []
+    before = (tmp_path / "copy" / "drift.csv").read_text()
+    (tmp_path / "copy" / "drift_pairs.csv").write_text("of another program")
+    renamed = write_coefficients(tmp_path / "copy", replace(own(), drift=None))
+    assert renamed == ["drift.csv", "drift_pairs.csv"]
+    again = read_coefficients(tmp_path / "copy")
+    assert again.drift is None and again.drift_pairs is None
+    assert (tmp_path / "copy" / "drift.csv.old").read_text() == before
+    assert (tmp_path / "copy" / "drift_pairs.csv.old").read_text() == "of another program"
 
 
 def test_drift_of_other_waves_than_the_excitation_is_refused(tmp_path: Path) -> None:
@@ -152,6 +158,46 @@ def test_output_of_nemoh_is_converted(tmp_path: Path, degrees: bool) -> None:
     assert found.added_mass == pytest.approx(exact.added_mass, abs=1e-7 * size)
     size = np.abs(exact.excitation).max()
     assert np.abs(found.excitation - exact.excitation).max() < 1e-5 * size
+
+
+@pytest.mark.parametrize(
+    ("suffix", "new", "message"),
+    [
+        (".1", "1.0 1 1", r"hull.1:1: a row has 3 columns; 4 are required"),
+        (".1", "1.0 1 nan 0.1 0.1", r"hull.1:1: .* a value is no number"),
+        (".1", "1.0 1 7 0.1 0.1", "motion 7; only one body of six is read"),
+        (".3", "1.0 0.0 1 ****** 0.1 ****** 0.2", r"hull.3:1: .* a value is no number"),
+        (".3", "1.0 0.0 9 0.1 0.1 0.1 0.1", "motion 9; only one body of six is read"),
+        (".3", "a remark", "surge has no finite value at .* rad/s and 0 deg"),
+        (".8", "1.0 0.0 0.0 nan 0.1 0.0 0.1 0.0", r"hull.8:1: .* a value is no number"),
+        (".hst", "1 inf 2.0", r"hull.hst:1: .* a value is no number"),
+        (".hst", "1 7 2.0", "motion 7; only one body of six is read"),
+        (".12d", "1.0 1.0 0.0 0.0 nan 1.0 0.0 1.0 0.0", r"hull.12d:1: .* a value is no number"),
+        (".12d", "1.0 1.0 0.0 0.0 1.5 1.0 0.0 1.0 0.0", "motion 1.5; only one body of six"),
+    ],
+)
+def test_damaged_output_of_wamit_is_refused(
+    tmp_path: Path, suffix: str, new: str, message: str
+) -> None:
+    path = write_wamit(tmp_path)
+    file = path.with_suffix(suffix)
+    rest = []
+    if file.is_file():
+        rest = file.read_text().splitlines()[1:]
+    file.write_text("\n".join([new, *rest]))
+    with pytest.raises(BadInput, match=message) as caught:
+        read_wamit(path, OutputScale(LENGTH, DENSITY, 0.0, 0.134))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["excitation.csv", "drift.csv", "drift_pairs.csv"])
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"1" * 140_000])
+def test_files_that_are_no_table_are_refused(tmp_path: Path, name: str, content: bytes) -> None:
+    write_coefficients(tmp_path / "copy", own())
+    (tmp_path / "copy" / name).write_bytes(content)
+    with pytest.raises(BadInput, match=f"{name}: no CSV file in UTF-8") as caught:
+        read_coefficients(tmp_path / "copy")
+    assert "\n" not in str(caught.value)
 
 
 def test_missing_output_is_refused(tmp_path: Path) -> None:

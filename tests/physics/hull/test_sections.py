@@ -89,6 +89,27 @@ def test_mesh_of_pontoons_has_their_published_coefficients() -> None:
     assert 2.0 * volume == pytest.approx(2.0 * 0.4 * 0.25 * 2.0 * 0.134146341463, rel=0.06)
 
 
+def test_hull_that_is_wider_below_the_waterline_has_its_area_and_volume() -> None:
+    section = np.array([[-0.1, -0.2], [0.1, -0.2], [0.4, 0.5], [-0.4, 0.5]])
+    found = hull_sections(hull_meshes.prism(section, 2.0), 5, "tumblehome")
+    waterline = 0.2 + 0.6 * 0.2 / 0.7
+    assert found.breadth == pytest.approx(np.full(5, waterline))
+    assert found.area == pytest.approx(np.full(5, 0.5 * 0.5 * (waterline + 0.8)))
+    assert found.particulars()["block_coefficient"] == 1.0
+
+
+@pytest.mark.parametrize(("begin", "end"), [(0.3, 0.9), (0.0, 0.6)])
+@pytest.mark.parametrize(("sign", "side"), [(1.0, "starboard"), (-1.0, "port")])
+def test_hull_on_one_side_of_the_centre_plane_is_refused(
+    begin: float, end: float, sign: float, side: str
+) -> None:
+    y = sign * np.array([begin, end])
+    section = np.array([[y[0], -0.2], [y[1], -0.2], [y[1], 0.5], [y[0], 0.5]])
+    words = f"off.stl: the hull lies to {side} of the centre plane, from {begin:g} to {end:g} m"
+    with pytest.raises(BadInput, match=words):
+        hull_sections(hull_meshes.prism(section, 2.0), 5, "off.stl")
+
+
 def test_hull_above_the_water_is_refused() -> None:
     with pytest.raises(BadInput, match=r"raft.obj: the hull does not float: 0 m\^3"):
         hull_sections(hull_meshes.box(1.0, 0.5, 0.2).moved(0.0, 0.0, -0.1), 5, "raft.obj")

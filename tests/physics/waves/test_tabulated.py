@@ -14,7 +14,7 @@ from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
 from boatsim.physics.waves.spectra import jonswap
 from boatsim.physics.waves.spreading import cosine_power
-from boatsim.physics.waves.tabulated import read_spectrum
+from boatsim.physics.waves.tabulated import close_sector, read_spectrum
 from boatsim.simulate.open_water import OpenWater
 
 OTTER = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
@@ -120,6 +120,54 @@ def test_a_direction_is_not_between_two_wave_systems(tmp_path: Path) -> None:
     assert np.mean(first) == pytest.approx(0.5, abs=0.07)
 
 
+def test_a_direction_is_that_of_the_energy_of_the_whole_cell(tmp_path: Path) -> None:
+    """A sea between two frequencies of 0 density that lie inside a single cell."""
+    rows = [BOTH.strip()]
+    for f, density in ((0.05, 0), (0.1, 0), (0.102, 5), (0.104, 0), (0.5, 0), (1.0, 0)):
+        for degrees in range(0, 360, 30):
+            rows.append(f"{f},{degrees},{density * float(degrees == 90):g}")
+    (tmp_path / "sea.csv").write_text("\n".join(rows))
+    for count in (160.0, 40.0, 20.0):
+        energy, _, direction = moments(sea_of(tmp_path / "sea.csv", components=count))
+        assert np.degrees(direction[energy > 0.0]) == pytest.approx(90.0, abs=30.0)
+
+
+def test_a_sector_of_directions_has_no_waves_outside_it(tmp_path: Path) -> None:
+    rows = [BOTH.strip()]
+    for f in (0.1, 0.2, 0.3):
+        rows += [f"{f},{degrees},0.01" for degrees in (330, 340, 350, 0, 10, 20, 30)]
+    (tmp_path / "sea.csv").write_text("\n".join(rows))
+    found = read_spectrum(tmp_path / "sea.csv")
+    # seven directions, each with its step of 10 deg
+    assert found.significant_height == pytest.approx(4.0 * np.sqrt(0.01 * 70.0 * 0.2))
+    _, _, direction = moments(sea_of(tmp_path / "sea.csv", components=500.0))
+    assert np.abs((np.degrees(direction) + 180.0) % 360.0 - 180.0).max() <= 40.0
+
+
+def test_directions_of_the_whole_circle_are_closed() -> None:
+    for degrees in ([0, 90, 180, 270], [0, 10, 20, 30, 90, 180, 270], [5, 100, 190, 275]):
+        direction = np.radians(degrees)
+        density = np.ones((3, len(degrees)))
+        assert close_sector(direction, density)[0] is direction
+    # one direction of the circle is missing
+    most, _ = close_sector(np.radians(np.arange(0.0, 330.0, 30.0)), np.ones((3, 11)))
+    assert np.degrees(most) == pytest.approx(np.arange(0.0, 360.0, 30.0))
+
+
+def test_a_height_of_zero_is_a_calm_sea(tmp_path: Path) -> None:
+    sea = sea_of(plain_file(tmp_path / "sea.csv"), significant_height=0.0)
+    assert sea.significant_height == 0.0 and sea.wave_field() is None
+    whole = sea_of(tmp_path / "sea.csv")
+    assert whole.wave_field() is not None
+    assert replace(whole, significant_height=0.0).wave_field() is None
+    assert IrregularSea().significant_height == 0.0
+
+
+def test_a_frequency_of_zero_without_waves_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "sea.csv").write_text(HEAD + "0,0\n" + ROWS)
+    assert read_spectrum(tmp_path / "sea.csv").frequency[0] == pytest.approx(0.2 * pi)
+
+
 @pytest.mark.slow
 def test_a_table_and_a_formula_are_the_same_sea(tmp_path: Path) -> None:
     """The rms force on a hull over realisations."""
@@ -211,6 +259,7 @@ def test_a_relative_path_begins_at_the_file_of_the_vessel(tmp_path: Path) -> Non
 
 
 ROWS = "0.1,1\n0.2,2\n0.3,1\n"
+CIRCLE = "".join(f"{f},{d},1\n" for f in (0.1, 0.2, 0.3) for d in (0, 90, 180, 270, 360))
 
 
 @pytest.mark.parametrize(
@@ -224,6 +273,9 @@ ROWS = "0.1,1\n0.2,2\n0.3,1\n"
         (HEAD + "0.1,1\n0.2,1\n", "at least three frequencies"),
         (HEAD + ROWS + "0.3,1\n", "a frequency stands twice"),
         (HEAD + "0.1,0\n0.2,0\n0.3,0\n", "the spectrum has no waves"),
+        (HEAD + "0,5\n" + ROWS, "the density at the frequency 0 is not 0"),
+        (HEAD + "0,0\n0.1,1\n0.2,1\n", "at least three frequencies above 0"),
+        (BOTH + CIRCLE + "0.1,90,2\n", "0.6283 rad/s and 90 deg stand twice"),
         (BOTH + "0.1,0,1\n0.2,0,1\n0.3,0,1\n", "1 directions; at least four are required"),
         (
             BOTH
