@@ -11,6 +11,7 @@ import importlib.util
 import re
 import sys
 import traceback
+from contextlib import suppress
 from functools import cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
@@ -212,9 +213,11 @@ def is_scenario_name(name: str) -> bool:
 def _scenario_file(home: Path, name: str) -> Path | None:
     """The file of a scenario by its full name; only files in its folder are read."""
     folder, _, case = name.partition("/")
-    if not folder or not case:
+    if folder in ("", ".", "..") or not case:
         return None
-    return _scenarios(home, folder).get(name)
+    with suppress(OSError):  # a text that is too long for the name of a file
+        return _scenarios(home, folder).get(name)
+    return None
 
 
 def _scenarios(home: Path, folder: str = "*") -> dict[str, Path]:
@@ -248,11 +251,17 @@ class _UncachedLoader(SourceFileLoader):
 
     Python takes the bytecode of a file edited within the same second, with the same size, for that
     of the new text.
+
+    Attributes:
+        text: Text of the file that was compiled.
     """
+
+    text: bytes | None = None
 
     def get_code(self, fullname: str) -> CodeType:
         """Return the compiled text of the file."""
-        return self.source_to_code(self.get_data(self.path), self.path)
+        self.text = self.get_data(self.path)
+        return self.source_to_code(self.text, self.path)
 
 
 def import_module_file(path: Path, name: str) -> ModuleType:
