@@ -74,14 +74,14 @@ INLINE double lesser(double a, double b) { return isnan(a) || a < b ? a : b; }
 INLINE double greater(double a, double b) { return isnan(a) || a > b ? a : b; }
 INLINE double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }
 INLINE int64_t magnitude(int64_t x) { return x < 0 ? -x : x; }
-/* Division by zero gives zero as in numba; -1 is apart as INT64_MIN / -1 overflows. */
+/* Quotient and remainder rounded down; 0 as in numba where there is none or it overflows */
+INLINE bool divides(int64_t a, int64_t b) { return b != 0 && (b != -1 || a != INT64_MIN); }
 INLINE int64_t quotient(int64_t a, int64_t b) {
-    if (b == 0) return 0;
-    if (b == -1) return (int64_t)(0 - (uint64_t)a);
+    if (!divides(a, b)) return 0;
     return a / b - (a % b != 0 && (a < 0) != (b < 0));
 }
 INLINE int64_t remainder_whole(int64_t a, int64_t b) {
-    return b == 0 || b == -1 ? 0 : a - quotient(a, b) * b;
+    return divides(a, b) ? a - quotient(a, b) * b : 0;
 }
 INLINE double remainder_real(double a, double b) {
     double m = fmod(a, b);
