@@ -2,6 +2,7 @@
 
 import gc
 import sys
+import threading
 from collections.abc import Sequence
 from importlib.abc import MetaPathFinder
 from types import ModuleType
@@ -17,12 +18,15 @@ def collect_garbage_rarely() -> None:
 
 
 class _NoPandas(MetaPathFinder):
-    """Finder of modules that makes an import of pandas fail."""
+    """Finder of modules that makes an import of pandas fail in the thread that created it."""
+
+    def __init__(self) -> None:
+        self._thread = threading.get_ident()
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> None:
-        if fullname == "pandas":
+        if fullname == "pandas" and threading.get_ident() == self._thread:
             raise ModuleNotFoundError("pandas is not imported here", name=fullname)
 
 
@@ -31,8 +35,9 @@ def keep_arrow_from_importing_pandas() -> None:
 
     At its first array pyarrow imports pandas, if it is installed, to recognise its series, which
     takes as long as a short run. A log is made of NumPy arrays. pandas itself can be imported
-    afterwards, and `to_pandas` of pyarrow then looks for it again. Nothing happens in a process
-    that has imported pandas.
+    afterwards, but pyarrow takes its series for plain sequences until it looks for pandas again: in
+    `to_pandas`, and after the import of a user's Python file (`boatsim/physics/content.py`). Other
+    threads can import pandas meanwhile. Nothing happens in a process that has imported pandas.
     """
     if "pandas" in sys.modules:
         return

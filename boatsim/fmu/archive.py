@@ -65,6 +65,12 @@ def write_fmu(
     """
     checked_choice("fmi_version", fmi_version, FMI_VERSIONS)
     step = checked_number("step", step, SHORTEST_STEP, LONGEST_STEP, "s")
+    if sensors is not None and step > sensors.period:
+        # a sample is taken at the end of a step only
+        raise BadInput(
+            f"--step = {step:g} s; allowed are at most the control period {sensors.period:g} s of "
+            f"{sensors.scenario}"
+        )
     if path.suffix != SUFFIX:
         raise BadInput(f"{path}: the name of an FMU ends in {SUFFIX}")
     try:

@@ -50,12 +50,14 @@ class SensorSuite:
         additional: Additional sensors by name, in the order of their random streams.
         period: Time between two samples [s].
         seed: Seed of the errors at the start; a parameter of the FMU.
+        scenario: Name of the scenario of which they are.
     """
 
     standard: Sensors
     additional: Mapping[str, Sensor]
     period: float
     seed: int
+    scenario: str
 
     @classmethod
     def from_scenario(cls, scenario: Scenario) -> "SensorSuite":
@@ -82,7 +84,7 @@ class SensorSuite:
                 f"{LARGEST_SEED:.0f}"
             )
         period = scenario.controller.period
-        return cls(scenario.sensors, additional, period, scenario.file.seed)
+        return cls(scenario.sensors, additional, period, scenario.file.seed, scenario.name)
 
     def parameters(self) -> dict[str, float]:
         """Return the values of all numbers of the sensors by name, in the order of the C source."""

@@ -11,6 +11,7 @@ import importlib.util
 import re
 import sys
 import traceback
+from contextlib import suppress
 from functools import cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
@@ -144,8 +145,9 @@ def find_content_file(kind: str, name: str, base_folder: Path | None = None) -> 
     if base_folder is None:
         name = full_scenario_name(kind, name)
     for search in (_by_path, _in_library, _in_user_content, _in_working_directory):
-        if (found := search(kind, name, base_folder)) is not None:
-            return found
+        with suppress(OSError):  # a text that is too long for the name of a file
+            if (found := search(kind, name, base_folder)) is not None:
+                return found
     if name.endswith((".py", POLICY, ".toml")):
         raise BadInput(f"{name}: no such file")
     raise BadInput(unknown_name_message(kind, name, all_content_names(kind)))
@@ -212,9 +214,11 @@ def is_scenario_name(name: str) -> bool:
 def _scenario_file(home: Path, name: str) -> Path | None:
     """The file of a scenario by its full name; only files in its folder are read."""
     folder, _, case = name.partition("/")
-    if not folder or not case:
+    if folder in ("", ".", "..") or not case:
         return None
-    return _scenarios(home, folder).get(name)
+    with suppress(OSError):  # a text that is too long for the name of a file
+        return _scenarios(home, folder).get(name)
+    return None
 
 
 def _scenarios(home: Path, folder: str = "*") -> dict[str, Path]:
@@ -248,11 +252,17 @@ class _UncachedLoader(SourceFileLoader):
 
     Python takes the bytecode of a file edited within the same second, with the same size, for that
     of the new text.
+
+    Attributes:
+        text: Text of the file that was compiled.
     """
+
+    text: bytes | None = None
 
     def get_code(self, fullname: str) -> CodeType:
         """Return the compiled text of the file."""
-        return self.source_to_code(self.get_data(self.path), self.path)
+        self.text = self.get_data(self.path)
+        return self.source_to_code(self.text, self.path)
 
 
 def import_module_file(path: Path, name: str) -> ModuleType:
@@ -275,11 +285,24 @@ def import_module_file(path: Path, name: str) -> ModuleType:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
+        _show_pandas_to_arrow()
     except (Exception, SystemExit) as error:
         del sys.modules[name]
         message = f"{path}:{_line_of(error, path)} {type(error).__name__}: {error}"
         raise BadInput(message.replace("\n", " ")) from error
     return module
+
+
+def _show_pandas_to_arrow() -> None:
+    """Make pyarrow recognise series of pandas, if both are imported.
+
+    pyarrow looks for pandas once, at its first array, which may have been before this import (see
+    `boatsim/cli/fast_start.py`). It looks again where one asks for its module of pandas.
+    """
+    arrow = sys.modules.get("pyarrow.lib")
+    if arrow is not None and "pandas" in sys.modules:
+        with suppress(AttributeError, ImportError):  # it is private to pyarrow
+            arrow._pandas_api.pd  # noqa: B018
 
 
 def _line_of(error: BaseException, path: Path) -> str:

@@ -195,6 +195,47 @@ def test_readings_are_held_between_two_samples(tmp_path: Path) -> None:
         assert boat.get(*names) != before
 
 
+@pytest.mark.parametrize("time", [-5.0, 1e6])
+def test_sensors_count_from_the_start_of_the_simulation(time: float, tmp_path: Path) -> None:
+    suite, path = fmu_of(measured("trial_boat", NOISY, ABOARD), tmp_path / "boat.fmu")
+    found = []
+    for start in (0.0, time):
+        rows = []
+        with opened(path) as boat:
+            boat.start({"u_mps": 0.5}, start)
+            for i in range(100):
+                rows.append(boat.get(*columns_of(suite)))
+                boat.step(start + i * PERIOD, PERIOD)
+        found.append(rows)
+    np.testing.assert_allclose(found[1], found[0], atol=1e-6)
+
+
+def test_no_sample_is_late_where_times_are_rounded(tmp_path: Path) -> None:
+    suite, path = fmu_of(measured("trial_boat", {}), tmp_path / "boat.fmu")
+    names = columns_of(suite)
+    now, step = 2e5, 0.02  # [s]; the rounding error of a time grows by up to 1.5e-11 s per step
+    sampled = []
+    with opened(path) as boat:
+        boat.start({"u_mps": 0.5}, now)
+        last = boat.get(*names)
+        for _ in range(300):
+            boat.step(now, step)
+            now += step
+            sampled.append(boat.get(*names) != last)
+            last = boat.get(*names)
+    assert sampled == [False, False, True] * 100
+
+
+def test_a_step_longer_than_the_control_period_is_refused(tmp_path: Path) -> None:
+    scenario = measured("trial_boat", {})
+    suite = SensorSuite.from_scenario(scenario)
+    message = f"--step = 1 s; allowed are at most the control period 0.06 s of {scenario.name}"
+    with pytest.raises(BadInput) as refused:
+        write_fmu(scenario.vessel, tmp_path / "boat.fmu", step=1.0, sensors=suite)
+    assert str(refused.value) == message
+    write_fmu(scenario.vessel, tmp_path / "boat.fmu", step=PERIOD, sensors=suite)
+
+
 def test_a_wrong_seed_and_a_late_one_are_refused(tmp_path: Path) -> None:
     _, path = fmu_of(measured("trial_boat", {}), tmp_path / "boat.fmu")
     with opened(path) as boat:

@@ -259,7 +259,7 @@ EXPORTED fmi3Status fmi3UpdateDiscreteStates(
         *next_time = s->part_begin + s->part_length;
     }
 #if SENSORS
-    *next_time = fmin(*next_time, s->sensors.due);
+    *next_time = fmin(*next_time, next_sample(&s->sensors));
 #endif
     *next_defined = isfinite(*next_time);
     return fmi3OK;

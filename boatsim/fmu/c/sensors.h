@@ -1,11 +1,11 @@
 /* Sensors of a vessel with the errors, rates and delays of `boatsim/simulate/sensing.py` and
    `boatsim/simulate/sensors/`. vessel_program.h defines which ones there are (HAS_...), the places
    of their parameters (SENSOR_...) and the numbers of their random streams (STREAM_...).
-   One sample of all sensors is taken per SAMPLE_PERIOD, at the end of an integration step. */
+   One sample of all sensors is taken per SAMPLE_PERIOD, at the end of an integration step. The
+   times t of the sensors count from the start of the simulation, which may be at any time. */
 
 #define PI 0x1.921fb54442d18p+1
 #define STANDARD_NOISES 7
-#define SAMPLE_SLACK 1e-9 /* [s] by which rounding may shift the time at which a sample is due */
 #define SAMPLE_EXACT 1e-9 /* of a sample: times are sums of floating-point numbers */
 
 /* Readings, in the order of the fields of `Sense` after t, then those of further sensors */
@@ -23,10 +23,10 @@ typedef struct {
 typedef struct {
     double seed;
     double parameters[SENSOR_PARAMETERS];
-    double due; /* [s] next sample */
+    double start; /* [s] time of the first sample */
     double sensed[SENSED_READINGS];
     double last[MOTION_NUMBERS]; /* motion at the last sample */
-    double last_time;            /* [s] */
+    double last_time;            /* [s] since the start */
     int64_t samples;
     generator_t standard;
 #if HAS_IMU
@@ -329,7 +329,11 @@ static void read_gnss(sensors_t *s, const double *m, double t) {
 /* All sensors
    --------------------------------------------------------------------------------------------- */
 
-static void start_sensors(sensors_t *s) {
+/* Time at which the next sample is due: no sum of periods, in which rounding errors would grow. */
+static double next_sample(const sensors_t *s) { return s->start + (double)s->samples * SAMPLE_PERIOD; }
+
+static void start_sensors(sensors_t *s, double start) {
+    s->start = start;
     s->samples = 0;
     s->standard = sensor_stream(s, STREAM_STANDARD);
 #if HAS_IMU
@@ -346,7 +350,8 @@ static void start_sensors(sensors_t *s) {
 #endif
 }
 
-/* Take a sample: `readings` are those of `INSTRUMENTS`, `motion` those of `MeasuredMotion`. */
+/* Take a sample: `readings` are those of `INSTRUMENTS`, `motion` those of `MeasuredMotion`;
+   t [s] since the start. */
 static void read_sensors(sensors_t *s, const double *readings, const double *motion, double t) {
     memcpy(s->sensed, readings, INSTRUMENT_READINGS * sizeof(double));
     read_standard_sensors(s);

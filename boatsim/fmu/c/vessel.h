@@ -118,8 +118,7 @@ static void initialise(vessel_t *s) {
     s->part_least = SHORTEST;
     s->step_end = s->time;
 #if SENSORS
-    start_sensors(&s->sensors);
-    s->sensors.due = s->time;
+    start_sensors(&s->sensors, s->time);
 #endif
     sample_sensors(s);
 }
@@ -226,8 +225,7 @@ static void state_derivatives(const vessel_t *s, double *derivatives) {
 /* Take a sample of the sensors, if there are any and one is due. */
 static void sample_sensors(vessel_t *s) {
 #if SENSORS
-    if (s->time < s->sensors.due - SAMPLE_SLACK) return;
-    s->sensors.due += SAMPLE_PERIOD;
+    if (s->time < next_sample(&s->sensors) - SAME_TIME) return;
     double now[HELD], readings[INSTRUMENT_READINGS], motion[MOTION_SIGNALS];
     present_actuators(s, now);
     readings_t found = INSTRUMENTS(
@@ -236,7 +234,9 @@ static void sample_sensors(vessel_t *s) {
     memcpy(readings, &found, sizeof readings);
     motion_t moved = POSE_AND_VELOCITIES(ARRAY(s->y));
     memcpy(motion, &moved, sizeof motion);
-    read_sensors(&s->sensors, readings, motion, s->time);
+    double since = s->time - s->sensors.start, nominal = (double)s->sensors.samples * SAMPLE_PERIOD;
+    if (fabs(since - nominal) <= SAME_TIME) since = nominal; /* without rounding errors */
+    read_sensors(&s->sensors, readings, motion, since);
 #endif
 }
 

@@ -30,6 +30,10 @@ class NoCompiler(BadInput):
     """Raised where no C compiler can make a library."""
 
 
+class RefusedSource(NoCompiler):
+    """Raised where the C compiler runs but refuses a source."""
+
+
 class CompilerSwitchedOff(NoCompiler):
     """Raised where the variable BOATSIM_NATIVE switches the C compiler off."""
 
@@ -161,7 +165,8 @@ def run_compiler(command: str, flags: Sequence[str], source: Path, library: Path
         library: The library to write.
 
     Raises:
-        NoCompiler: The compiler cannot be run, or refuses the source.
+        NoCompiler: The compiler cannot be run.
+        RefusedSource: It refuses the source.
     """
     given = [command, *flags, *EXACT, "-o", str(library), str(source), "-lm"]
     try:
@@ -169,4 +174,4 @@ def run_compiler(command: str, flags: Sequence[str], source: Path, library: Path
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NoCompiler(f"{command}: {error}") from None
     if done.returncode:
-        raise NoCompiler(f"{command}: {done.stderr.strip()[:200]}")
+        raise RefusedSource(f"{command}: {done.stderr.strip()[:200]}")

@@ -28,7 +28,8 @@ def source_preamble() -> str:
 class Declarations(ABC):
     """C source of a program: structs, constants and functions, each before it is used."""
 
-    def __init__(self) -> None:
+    def __init__(self, wrap_indices: bool) -> None:
+        self.wrap_indices = wrap_indices
         self.structs: list[str] = []
         self.functions: list[str] = []
         self._structs: dict[tuple[Any, tuple[Kind, ...]], Struct] = {}

@@ -73,6 +73,7 @@ class ExpressionTranslator:
         self.temporaries = 0
         self.returned: Kind | None = None
         self.variables: dict[str, Value] = {}
+        self.counters = self._counters()
         self.arguments: list[Value] = []
         for arg, kind in zip(tree.args.args, kinds, strict=True):
             if arg.arg in self.floats and kind in (WHOLE, TRUTH):
@@ -81,6 +82,36 @@ class ExpressionTranslator:
             self.arguments.append(own)
             self.variables[arg.arg] = own
             self.declared[own.text] = kind
+
+    def _counters(self) -> set[str]:
+        """Return the names that only loops over numbers from zero on, or over boats, assign."""
+        arguments = {argument.arg for argument in self.tree.args.args}
+        counters: set[str] = set()
+        targets: set[ast.expr] = set()
+        for loop in ast.walk(self.tree):
+            if not isinstance(loop, ast.For) or not isinstance(loop.target, ast.Name):
+                continue
+            over_boats = isinstance(loop.iter, ast.Name) and loop.iter.id in arguments
+            if over_boats or self._counts_from_zero(loop.iter):
+                counters.add(loop.target.id)
+                targets.add(loop.target)
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+                if node not in targets:  # assigned by another statement, too
+                    counters.discard(node.id)
+        return counters - arguments
+
+    def _counts_from_zero(self, node: ast.expr) -> bool:
+        """Whether an expression is a range of numbers that are surely not negative."""
+        if not isinstance(node, ast.Call) or self.resolve_object(node.func) is not range:
+            return False
+        rest = [node.args[0], *node.args[2:]] if len(node.args) > 1 else []
+        for number in rest:
+            if not isinstance(number, ast.Constant) or not isinstance(number.value, int):
+                return False
+            if number.value < 0:
+                return False
+        return True
 
     def add_line(self, line: str) -> None:
         """Append a line to the C source, at the present indentation."""
@@ -196,12 +227,18 @@ class ExpressionTranslator:
                 self.translate_expression(node.value.value),
                 self.translate_expression(node.slice),
             )
-            return Value(WHOLE, f"{owner.text}.n{place.fixed}")
+            if not isinstance(owner.kind, ArrayKind) or not isinstance(place.fixed, int):
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+            axis = place.fixed % owner.kind.dimensions
+            return Value(WHOLE, f"{owner.text}.n{axis}")
         owner = self.translate_expression(node.value)
         if isinstance(owner.kind, Struct):
             return self.translate_tuple_entry(owner, node)
         if isinstance(owner.kind, RecordArray):
             place = self.translate_integer(node.slice)
+            if not self.is_counted(node.slice, place):
+                # the number of records, from whose end it may count, is unknown
+                raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
             record = owner.kind.item
             return Value(record, f"({owner.text} + {place.text} * {record.words})")
         if not isinstance(owner.kind, ArrayKind):
@@ -211,15 +248,32 @@ class ExpressionTranslator:
             places = node.slice.elts
         if isinstance(places[-1], ast.Slice):
             return self.translate_array_slice(owner, places, node)
-        indices = [self.translate_index(owner, axis, p) for axis, p in enumerate(places)]
+        indices = self.translate_indices(owner, places, node)
         return self.translate_array_entry(owner, indices, node)
 
-    def translate_index(self, owner: Value, axis: int, node: ast.expr) -> str:
-        """Translate an array index to C; a negative constant counts from the end."""
-        value = self.translate_integer(node)
-        if isinstance(value.fixed, int) and value.fixed < 0:
-            return f"({owner.text}.n{axis} - {-value.fixed})"
-        return value.text
+    def is_counted(self, node: ast.expr, value: Value) -> bool:
+        """Return whether an index is surely not negative: a constant or the counter of a loop."""
+        if isinstance(value.fixed, int):
+            return value.fixed >= 0
+        return isinstance(node, ast.Name) and node.id in self.counters
+
+    def translate_indices(
+        self, owner: Value, places: Sequence[ast.expr], node: ast.Subscript
+    ) -> list[str]:
+        """Translate the indices of an array to C; negative ones count from the end."""
+        found = []
+        for axis, place in enumerate(places):
+            value = self.translate_integer(place)
+            text = value.text
+            if isinstance(value.fixed, int) and value.fixed < 0:
+                text = f"({owner.text}.n{axis} - {-value.fixed})"
+            elif self.program.wrap_indices and not self.is_counted(place, value):
+                if any(isinstance(part, ast.Call) for part in ast.walk(node.value)):
+                    # the array would be computed twice
+                    raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+                text = f"wrapped({text}, {owner.text}.n{axis})"
+            found.append(text)
+        return found
 
     def translate_array_entry(self, owner: Value, indices: Sequence[str], node: ast.expr) -> Value:
         """Return the C expression of an entry, a row or a plane of an array."""
@@ -233,19 +287,22 @@ class ExpressionTranslator:
         return Value(ArrayKind(REAL, size - n), f"{ROW_FUNCTIONS[size, n]}({inside})")
 
     def translate_array_slice(
-        self, owner: Value, places: Sequence[ast.expr], node: ast.expr
+        self, owner: Value, places: Sequence[ast.expr], node: ast.Subscript
     ) -> Value:
         """Return the C expression of consecutive entries of a vector or rows of a matrix."""
         if len(places) > 1:
-            indices = [self.translate_index(owner, axis, p) for axis, p in enumerate(places[:-1])]
+            indices = self.translate_indices(owner, places[:-1], node)
             owner = self.translate_array_entry(owner, indices, node)
         part, kind = places[-1], owner.kind
         assert isinstance(part, ast.Slice) and isinstance(kind, ArrayKind)
         if part.step is not None or kind.dimensions > 2 or kind.item != REAL:
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         owner = owner if owner.text.isidentifier() else self.copy_to_variable(owner)
-        low = self.translate_index(owner, 0, part.lower) if part.lower else "0"
-        high = self.translate_index(owner, 0, part.upper) if part.upper else f"{owner.text}.n0"
+        low, high = "0", f"{owner.text}.n0"
+        if part.lower:
+            low = self.translate_integer(part.lower).text
+        if part.upper:
+            high = self.translate_integer(part.upper).text
         return Value(kind, f"part_of{kind.dimensions}({owner.text}, {low}, {high})")
 
     def translate_tuple_entry(self, owner: Value, node: ast.Subscript) -> Value:
@@ -261,6 +318,8 @@ class ExpressionTranslator:
         kind = owner.kind.common_field_kind
         if kind is None:
             raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
+        if self.program.wrap_indices and not self.is_counted(node.slice, place):
+            place = Value(WHOLE, f"wrapped({place.text}, {len(owner.kind.kinds)})")
         if owner.text.isidentifier():
             return Value(kind, f"((const {kind.c} *)&{owner.text})[{place.text}]")
         inside = f"{owner.kind.c} whole_ = {owner.text}; ((const {kind.c} *)&whole_)[{place.text}];"
@@ -531,6 +590,8 @@ class ExpressionTranslator:
         of = self.translate_expression(node.args[0])
         if isinstance(of.kind, Struct):
             return number_value(len(of.kind.kinds))
+        if not isinstance(of.kind, ArrayKind):
+            raise self.unsupported_error(node, f"'{ast.unparse(node)}'")
         return Value(WHOLE, f"{of.text}.n0")
 
     def allocate_array(self, node: ast.Call) -> Value:

@@ -38,9 +38,15 @@ class _KindChanged(Exception):
 class Translation(Declarations):
     """Translates functions when they are asked for; called functions come first in the text."""
 
-    def __init__(self) -> None:
-        """Begin without functions."""
-        super().__init__()
+    def __init__(self, wrap_indices: bool = False) -> None:
+        """Begin without functions.
+
+        Args:
+            wrap_indices: Whether a negative index of an array that is no constant counts from the
+                end, as in Python. The programs of vessels have no such indices and are faster
+                without.
+        """
+        super().__init__(wrap_indices)
         self._functions: dict[tuple[Any, tuple[Kind, ...]], tuple[str, Kind]] = {}
 
     def translate_function(self, function: Any, kinds: Sequence[Kind]) -> tuple[str, Kind]:

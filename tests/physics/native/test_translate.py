@@ -173,6 +173,21 @@ def test_arrays_are_changed_in_place_as_in_python(native: Callable[..., Any]) ->
     assert np.array_equal(v, v2) and np.array_equal(A, A2, equal_nan=True)
 
 
+def shifts(v: Any, n: int) -> float:
+    v[1:n] = v[: n - 1]
+    v[-3:] = v[-4:-1]
+    return v[2:50].size + v[n:1].size + v[-50:2].size
+
+
+@pytest.mark.parametrize("n", [4, 6])
+def test_slices_end_with_the_array_and_may_overlap(n: int, native: Callable[..., Any]) -> None:
+    call = _once(native, shifts, Entry((VECTOR, WHOLE), float))
+    v = np.arange(6.0)
+    v2 = v.copy()
+    assert call(v, n) == shifts(v2, n)
+    assert np.array_equal(v, v2)
+
+
 def test_arrays_of_another_type_or_shape_are_refused(native: Callable[..., Any]) -> None:
     call = _once(native, arrays, Entry((VECTOR, MATRIX, WHOLE), float))
     A = np.zeros((3, 4))
