@@ -149,8 +149,7 @@ class OutputErrorSearch:
         Args:
             other: Vessel that is compared with the best one so far.
         """
-        ratio = error_ratio(self.problem, other, self.model, self.held_out, self.horizon)
-        if ratio > self.problem.config.validate.worse:
+        if self._rms_ratio(other, self.model) > self.problem.config.validate.worse:
             return True
         return bool(
             generalization.harmed_groups(
@@ -192,19 +191,18 @@ class OutputErrorSearch:
     def _accept(self, found: OutputErrorFit) -> None:
         """Make a fit the best one, and its errors the units of the next ones.
 
-        In these units it is fitted again, unless simulations of held-out recordings then diverge.
+        In these units it is fitted again, unless the errors on held-out recordings then get clearly
+        worse, or a simulation of them diverges.
         """
         self.errors = self._errors_of(found.model)
         again = self._fitted(found.model)
-        if self._diverges(again.model) and not self._diverges(found.model):
+        if self._rms_ratio(again.model, found.model) > self.problem.config.validate.worse:
             again = without_fit(self.errors, found.model, self.fixed_effects)
         self.best = again
 
-    def _diverges(self, model: Fit) -> bool:
-        """Whether a simulation of a held-out recording diverges."""
-        runs = free_runs(self.problem, {AFTER: model}, self.held_out, self.horizon)
-        squares = run_errors(runs, AFTER).squares.values()
-        return any(not np.isfinite(each).all() for each in squares)
+    def _rms_ratio(self, found: Fit, reference: Fit) -> float:
+        """Ratio of the rms errors of two vessels over held-out recordings."""
+        return error_ratio(self.problem, found, reference, self.held_out, self.horizon)
 
     def _errors_of(self, reference: Fit) -> OutputErrors:
         """Errors of free runs over the fitted recordings in units of those of a vessel."""

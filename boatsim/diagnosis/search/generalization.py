@@ -60,16 +60,18 @@ def errors_grew(
 def error_ratio(found: Squares, reference: Squares) -> float:
     """Return the ratio of the mean square simulation errors of two models.
 
-    It is the geometric mean over position, heading, roll and heave.
+    It is the geometric mean over position, heading, roll and heave; nan if simulations by both
+    diverge.
 
     Args:
         found: Mean square errors of a model.
         reference: Those of the model that it is compared with.
     """
     ratios = []
-    for family, errors in found.items():
-        ratios.append(np.log(np.mean(errors) / np.mean(reference[family])))
-    return float(np.exp(np.mean(ratios)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for family, errors in found.items():
+            ratios.append(np.log(np.mean(errors) / np.mean(reference[family])))
+        return float(np.exp(np.mean(ratios)))
 
 
 def recordings_by_group(recordings: Sequence[MappedRecording]) -> dict[str, list[MappedRecording]]:

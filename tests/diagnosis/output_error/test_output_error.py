@@ -198,19 +198,22 @@ def test_of_two_searches_the_vessel_that_predicts_better_is_kept() -> None:
     assert better.model.effects == ("weak_reverse",)
 
 
-def test_a_fit_in_new_units_after_which_held_out_simulations_diverge_is_not_kept(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("factor", [-1e3, 3.0])  # the simulation diverges, or is worse
+def test_a_fit_in_new_units_after_which_held_out_simulations_are_worse_is_not_kept(
+    factor: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem, retuned = laid(sail("fitted", 1, odd)[0])
     search = OutputErrorSearch(problem, retuned, held_out_of(problem, odd))
     best = search.best
-    away = np.where([f.name == "surge" for f in best.model.free], -1e3, best.model.theta)
-    diverging = replace(best, model=replace(best.model, theta=away))
-    monkeypatch.setattr(search, "_fitted", lambda start: diverging)
+    surge = [f.name == "surge" for f in best.model.free]
+    theta = np.where(surge, factor * best.model.theta, best.model.theta)
+    away = replace(best, model=replace(best.model, theta=theta))
+    monkeypatch.setattr(search, "_fitted", lambda start: away)
     search._accept(best)
     np.testing.assert_array_equal(search.model.theta, best.model.theta)
-    search._accept(diverging)  # nothing else is there
-    np.testing.assert_array_equal(search.model.theta, away)
+    if factor > 0.0:
+        search._accept(away)  # nothing better is there
+        np.testing.assert_array_equal(search.model.theta, theta)
 
 
 def test_nothing_is_added_once_the_budget_is_spent() -> None:
