@@ -105,7 +105,7 @@ def _number(text: str, label: str) -> float:
     except ValueError:
         value = np.nan
     if not np.isfinite(value):
-        raise BadInput(f"{label} = {text!r}; a number is required")
+        raise BadInput(f"{label} = {text[:40]!r}; a number is required")
     return value
 
 
