@@ -30,6 +30,8 @@ from effect_cases import (  # noqa: E402
 )
 from page_commands import first_difference  # noqa: E402
 
+from boatsim.physics import content  # noqa: E402
+
 OUTPUTS = Path(__file__).with_name("effect_outputs.toml")
 SPECIAL_LINES = {  # last lines of examples of effects that change the time or add noise
     "clock_offset": (
@@ -137,6 +139,9 @@ def _law_program(name: str, case: Case) -> str:
     if signals:
         arguments += f", effect.signals({signals})"
     lines = ["import boatsim", "from boatsim.physics import base", ""]
+    if content.load_class("effect", own).sees_table:
+        arguments += ", np.array(effect.table()), 0"
+        lines = ["import numpy as np", "", *lines]
     if "vessel" in case:
         before, after = _labels(case)
         lines += _vessel_lines(name, case)
