@@ -248,7 +248,7 @@ class AppendedFile:
 
 
 def read_csv(path: Path) -> list[list[str]]:
-    """Return the rows of a CSV file in UTF-8.
+    """Return the rows of a CSV file in UTF-8, with or without a byte order mark.
 
     Args:
         path: The file.
@@ -257,7 +257,7 @@ def read_csv(path: Path) -> list[list[str]]:
         BadInput: The file cannot be read.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with path.open(encoding="utf-8-sig", newline="") as file:
             return list(csv.reader(file))
     except (UnicodeDecodeError, csv.Error) as error:
         raise BadInput(f"{path}: no CSV file in UTF-8: {error}") from None

@@ -6,7 +6,6 @@ points form a grid: every combination of the values of these columns has one row
 sorted by time, then x, y and depth.
 """
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name_message
+from boatsim.files import read_csv
 from boatsim.physics.signals import Array
 
 GRID = ("t_s", "x_m", "y_m", "depth_m")
@@ -115,11 +115,7 @@ def read_current(file: str | Path) -> CurrentTable:
 @lru_cache(maxsize=8)
 def _read_current(path: Path, _: int) -> CurrentTable:
     """Read a file that has the given time of change."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.reader(file))
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise BadInput(f"{path}: no CSV file in UTF-8: {error}") from None
+    rows = read_csv(path)
     columns = [cell.strip() for cell in rows[0]] if rows else []
     _check_columns(columns, path)
     values = _numbers(rows[1:], columns, path)

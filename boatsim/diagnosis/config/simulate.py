@@ -59,6 +59,6 @@ class SimulateConfig:
         5,
         "count",
         "Most candidates that get a full fit before one is added, in the order of the evidence of "
-        "their rough fits; usually the first or second one is added.",
+        "their rough fits; later ones are less probable.",
         low=1,
     )

@@ -20,8 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from boatsim.errors import BadInput
-from boatsim.physics.coefficients.excitation_grid import CLOSE, MIRROR, cubic_weights
+from boatsim.physics.coefficients.excitation_grid import MIRROR, check_headings, cubic_weights
 from boatsim.physics.coefficients.table import DriftPairs
 from boatsim.physics.signals import Array
 
@@ -54,11 +53,7 @@ def pair_table(pairs: DriftPairs, label: str) -> tuple[float, ...]:
         BadInput: There are fewer than five headings, or they do not extend from 0 to pi.
     """
     heading = pairs.heading
-    if len(heading) < 5 or abs(heading[0]) > CLOSE or abs(heading[-1] - pi) > CLOSE:
-        raise BadInput(
-            f"{label}: the headings of the pairs of waves extend from {heading[0]:.3g} to "
-            f"{heading[-1]:.3g} rad; at least five from 0 to pi are required"
-        )
+    check_headings(heading, f"{label}: the headings of the pairs of waves")
     frequency = np.linspace(pairs.frequency[0], pairs.frequency[-1], FREQUENCIES)
     weights, functions = [], []
     for axis in range(6):

@@ -33,6 +33,23 @@ EDGE = 0.01
 CLOSE = 1e-3  # [rad] by which the first and last heading may differ from 0 and pi
 
 
+def check_headings(heading: Array, words: str) -> None:
+    """Check that headings extend over half a circle, so that their mirror images complete it.
+
+    Args:
+        heading: Headings (H,) [rad], increasing.
+        words: File or folder and quantity, for the message.
+
+    Raises:
+        BadInput: There are fewer than five headings, or they do not extend from 0 to pi.
+    """
+    if len(heading) < 5 or abs(heading[0]) > CLOSE or abs(heading[-1] - pi) > CLOSE:
+        raise BadInput(
+            f"{words} extend from {heading[0]:.3g} to {heading[-1]:.3g} rad; at least five from 0 "
+            "to pi are required"
+        )
+
+
 @lru_cache(maxsize=8)
 def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
     """Return the table of excitation and mean drift of a hull, as compiled laws read it.
@@ -47,11 +64,7 @@ def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
         BadInput: There are fewer than five headings, or they do not extend from 0 to pi.
     """
     heading = found.heading
-    if len(heading) < 5 or abs(heading[0]) > CLOSE or abs(heading[-1] - pi) > CLOSE:
-        raise BadInput(
-            f"{label}: the headings of the excitation extend from {heading[0]:.3g} to "
-            f"{heading[-1]:.3g} rad; at least five from 0 to pi are required"
-        )
+    check_headings(heading, f"{label}: the headings of the excitation")
     frequency = np.linspace(found.frequency[0], found.frequency[-1], FREQUENCIES)
     over_frequency = CubicSpline(found.frequency, found.excitation)(frequency)
     grid = _over_headings(heading, over_frequency, MIRROR)
