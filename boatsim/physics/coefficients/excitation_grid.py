@@ -22,9 +22,12 @@ from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
 VALUES, DRIFTS = 12, 3  # of each frequency and heading, of excitation and of drift
-# Sizes of the grid, by which the values in between err by less than 1 % of the largest one for
-# hulls in waves of half their length and more (tests)
-FREQUENCIES, HEADINGS = 96, 25
+# Numbers of frequencies, of which the first is taken whose values in between err by less than
+# `ERROR` of the largest one. A hull in waves of half its length and more needs the first; a table
+# that extends to much shorter waves, with the same number of its own frequencies, needs more.
+FREQUENCIES = (96, 192, 384, 768)
+ERROR = 0.01
+HEADINGS = 25  # errors of values in between are of the same size (tests)
 # Sign of a component in the mirror at the plane of symmetry of the hull
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 DRIFT_MIRROR = np.array([1.0, -1.0, -1.0])  # of surge, sway and yaw
@@ -65,18 +68,36 @@ def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
     """
     heading = found.heading
     check_headings(heading, f"{label}: the headings of the excitation")
-    frequency = np.linspace(found.frequency[0], found.frequency[-1], FREQUENCIES)
-    over_frequency = CubicSpline(found.frequency, found.excitation)(frequency)
-    grid = _over_headings(heading, over_frequency, MIRROR)
+    spline = CubicSpline(found.frequency, found.excitation)
+    frequency = _grid_frequencies(found, spline)
+    grid = _over_headings(heading, spline(frequency), MIRROR)
     pairs = np.stack([grid.real, grid.imag], axis=-1)
-    drift = np.zeros((FREQUENCIES, HEADINGS, DRIFTS))
+    drift = np.zeros((len(frequency), HEADINGS, DRIFTS))
     if found.drift is not None:
         # the drift can have a narrow peak at a resonance, next to which a spline would oscillate
         over_frequency = PchipInterpolator(found.frequency, found.drift)(frequency)
         drift = _over_headings(heading, over_frequency, DRIFT_MIRROR)
     step = frequency[1] - frequency[0]
-    head = (float(frequency[0]), float(step), float(FREQUENCIES), float(HEADINGS))
+    head = (float(frequency[0]), float(step), float(len(frequency)), float(HEADINGS))
     return (*head, *pairs.ravel().tolist(), *drift.ravel().tolist())
+
+
+def _grid_frequencies(found: WaveLoads, spline: CubicSpline) -> Array:
+    """Return equally spaced frequencies between which a linear function follows the excitation.
+
+    Args:
+        found: The table.
+        spline: Its excitation over frequency, of shape (H, 6) at each.
+    """
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    for count in FREQUENCIES:
+        grid = np.linspace(found.frequency[0], found.frequency[-1], count)
+        values = spline(grid)
+        middle = spline(0.5 * (grid[1:] + grid[:-1]))
+        error = np.abs(middle - 0.5 * (values[1:] + values[:-1])).max(axis=(0, 1))
+        if np.all(error <= ERROR * largest):
+            break
+    return grid
 
 
 def _over_headings(heading: Array, values: Array, mirror: Array) -> Array:
