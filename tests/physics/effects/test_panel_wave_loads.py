@@ -15,7 +15,11 @@ from boatsim.physics.coefficients.excitation_grid import (
     excitation_grid,
     mean_drift_force,
 )
-from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
+from boatsim.physics.coefficients.files import (
+    read_coefficients,
+    read_wave_loads,
+    write_coefficients,
+)
 from boatsim.physics.coefficients.table import WaveLoads
 from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
@@ -211,3 +215,22 @@ def test_a_table_down_to_short_waves_is_as_fine_as_one_of_long_waves(highest: fl
             imaginary = np.array(excitation_force(*place, 0.0, -1.0, table, np.int64(0)))
             error = np.abs(real + 1j * imaginary - exact(w)[h])
             assert np.all(error <= 0.01 * largest)
+
+
+def test_loads_at_headings_of_the_table_are_those_of_the_table() -> None:
+    # headings every 10 degrees, of which every second is no multiple of a 24th of pi
+    found = table_of_long_hull(1.25)
+    table = np.array([*excitation_grid(found, "two ends"), 0.0])
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    for k in (20, 40, 49):
+        for h, heading in enumerate(found.heading):
+            place = (found.frequency[k], np.cos(heading), np.sin(heading))
+            real = np.array(excitation_force(*place, 1.0, 0.0, table, np.int64(0)))
+            imaginary = np.array(excitation_force(*place, 0.0, -1.0, table, np.int64(0)))
+            error = np.abs(real + 1j * imaginary - found.excitation[k, h])
+            assert np.all(error <= 0.01 * largest)
+
+
+def test_a_table_of_a_small_hull_keeps_the_smallest_grid() -> None:
+    grid = excitation_grid(read_wave_loads(OTTER), "otter")
+    assert grid[2:4] == (96.0, 25.0)
