@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.files import toml_value
 from boatsim.hydrodynamics.mss import read_mss
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.table import WaveLoads
@@ -42,7 +43,8 @@ SEAS = {
 }
 GAMMA = 3.3
 FINER = 8  # intervals into which a spline divides those between the frequencies of a table
-FREE_RUN, FREE_STEP = 30.0, 0.002  # [s]
+FREE_RUN, FREE_STEP = 30.0, 0.004  # [s]
+FREE_HEIGHTS = (0.02, 0.002)  # [m]
 
 
 def percent(values: Sequence[float] | Array) -> str:
@@ -146,23 +148,28 @@ def print_drift(own: PanelWaveLoads, file: Path) -> None:
 
 def print_free_drillship(work: Path, own: PanelWaveLoads, file: Path) -> None:
     """Print the differences of the free motion of the drillship."""
-    table = f'\n[[effect]]\nuse = "panel_wave_loads"\ncoefficients = "{work / "drillship"}"\n'
-    values = DRILLSHIP | {"components": own.components, "significant_height": 0.02}
-    for key, value in values.items():
-        table += f"{key} = {value!r}\n".replace("'", '"')
-    vessel = mcsimpython.same_vessel(work / "free_drillship", table)
-    sea = replace(own, significant_height=0.02)
-    peer = mcsimpython.wave_load(file, waves_of(sea))
     print(head("free motion from rest, 30 s, uncoupled coefficients"))
-    ours, others = [], []
-    for psi in headings(IN_TABLE):
-        ours.append(mcsimpython.same_free_motion(vessel, FREE_RUN, FREE_STEP, float(psi)))
-        others.append(mcsimpython.free_motion(peer, FREE_RUN, FREE_STEP, float(psi)))
-    both = np.array(ours), np.array(others)
-    both[0][..., 5] -= headings(IN_TABLE)[:, None]
-    both[1][..., 5] -= headings(IN_TABLE)[:, None]
-    both[1][..., 5] = (both[1][..., 5] + np.pi) % (2.0 * np.pi) - np.pi
-    print(f"{'steps of 2 ms':56}{percent(relative_difference(*both))}")
+    for height in FREE_HEIGHTS:
+        values = DRILLSHIP | {"components": own.components, "significant_height": height}
+        table = f'\n[[effect]]\nuse = "panel_wave_loads"\ncoefficients = "{own.coefficients}"\n'
+        for key, value in values.items():
+            table += f"{key} = {toml_value(value)}\n"
+        vessel = mcsimpython.same_vessel(work / "free_drillship", table)
+        peer = mcsimpython.wave_load(file, waves_of(replace(own, significant_height=height)))
+        ours, others = [], []
+        for psi in headings(IN_TABLE):
+            run = float(psi), FREE_RUN, FREE_STEP
+            ours.append(turned(mcsimpython.same_free_motion(vessel, *run), float(psi)))
+            others.append(turned(mcsimpython.free_motion(peer, *run), float(psi)))
+        rows = relative_difference(np.array(ours), np.array(others))
+        print(f"{f'significant height {height:g} m':56}{percent(rows)}")
+
+
+def turned(motion: Array, psi: float) -> Array:
+    """Return a motion (T, 6) with the yaw from a heading on [rad]."""
+    own = motion.copy()
+    own[:, 5] = (own[:, 5] - psi + np.pi) % (2.0 * np.pi) - np.pi
+    return own
 
 
 def print_mss(folder: Path, work: Path) -> None:

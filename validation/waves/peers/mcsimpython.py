@@ -23,6 +23,7 @@ from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel
 from boatsim.physics.waves.field import WaveField
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.stepper import State
 from validation.waves.boats import write_vessel
 
 COLUMNS = ("x", "y", "z", "phi", "theta", "psi")
@@ -201,14 +202,14 @@ def same_vessel(folder: Path, sea: str) -> Vessel:
     return write_vessel(folder, text + sea)
 
 
-def free_motion(loads: Any, duration: float, step: float, psi: float) -> Array:
+def free_motion(loads: Any, psi: float, duration: float, step: float) -> Array:
     """Return the motion (T, 6) of its drillship from rest in first-order loads [m, rad].
 
     Args:
         loads: Loads of `wave_load`.
+        psi: Heading at the start [rad].
         duration: Simulated time [s].
         step: Integration step [s].
-        psi: Heading at the start [rad].
     """
     own = uncoupled_vessel(step)
     own.set_eta(np.array([0.0, 0.0, 0.0, 0.0, 0.0, psi]))
@@ -236,10 +237,8 @@ def drifting_run(loads: Any, duration: float, step: float) -> Callable[[], None]
     return run
 
 
-def same_free_motion(vessel: Vessel, duration: float, step: float, psi: float) -> Array:
+def same_free_motion(vessel: Vessel, psi: float, duration: float, step: float) -> Array:
     """Return the motion (T, 6) of the vessel of boatsim from rest [m, rad]."""
-    from boatsim.simulate.stepper import State
-
     engine = OpenWater(vessel, step=step)
     engine.reset(State(psi=psi))
     rows = []
