@@ -1,25 +1,32 @@
-"""Speed comparison with other simulators: `python -m benchmarks.peers [--rounds 5]`.
+"""Speed comparison with other simulators: `python -m benchmarks.peers [--rounds 5] [--mss FOLDER]`.
 
 Each pair runs the same manoeuvre for the same simulated time alternately in one process, so that
 other load slows both. The table has medians over the rounds and the median of the rounds' ratios.
 Simulators that are not installed are marked. `pip install "boatsim[peers]"` installs those on
-PyPI; the Python vehicle simulator comes from its repository.
+PyPI; the Python vehicle simulator and MSS come from their repositories. MSS runs in GNU Octave.
 """
 
 import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from math import radians
+from pathlib import Path
 from statistics import median
+from tempfile import mkdtemp
 from time import perf_counter
 
 import numpy as np
 
 from benchmarks.engine import COMMANDS, SHAFTS, STEP
+from boatsim.hydrodynamics.mss import read_mss
 from boatsim.physics import vessel
+from boatsim.physics.coefficients.table import WaveLoads
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.env import load as load_env
+from validation.waves.peers import mcsimpython, mss
+from validation.waves.peers.comparison import loads_at, sea_of_table, waves_of
 
 RUDDER = {"delta_rad": radians(-35.0), "n_rps": 11.8516}
 ELLIPSOID = """<mujoco>
@@ -33,7 +40,12 @@ ELLIPSOID = """<mujoco>
   </body></worldbody>
   <actuator><motor site="hull" gear="1 0.1 0 0 0 0.02"/></actuator>
 </mujoco>"""
+DRILLSHIP_SEA = {"significant_height": 0.06, "modal_period": 2.2, "drift": 1.0}  # [m], [s]
 Work = Callable[[], object]
+
+
+class Seconds(float):
+    """Computing time that a program measured itself [s]."""
 
 
 @dataclass(frozen=True)
@@ -184,6 +196,53 @@ def compare_gymnasium_boat() -> Pair:
     return Pair(f"gym-sailing, motor boat, {steps} control steps", theirs, works)
 
 
+def compare_mcsimpython_drillship() -> Pair:
+    """Return the pair for MCSimPython: its drillship adrift in 100 waves, with slow drift.
+
+    Euler steps with one evaluation of the loads there, Runge-Kutta steps with four here.
+    """
+    seconds, step = 60.0, 0.05
+    path, work = mcsimpython.vessel_file(), Path(mkdtemp(prefix="boatsim_peers_"))
+    sea = sea_of_table(work / "loads", mcsimpython.read_vessel(path), **DRILLSHIP_SEA)
+    peer = mcsimpython.wave_load(path, waves_of(sea))
+    table = f'\n[[effect]]\nuse = "panel_wave_loads"\ncoefficients = "{sea.coefficients}"\n'
+    for key, value in (DRILLSHIP_SEA | {"components": sea.components}).items():
+        table += f"{key} = {value}\n"
+    made = mcsimpython.same_vessel(work / "vessel", table)
+    return Pair(
+        "MCSimPython, drillship in 100 waves, 60 s",
+        mcsimpython.drifting_run(peer, seconds, step),
+        boatsim_runs(made, {}, [0.0] * 12, round(seconds / step), step),
+    )
+
+
+def compare_mss_loads(folder: Path | None) -> Pair:
+    """Return the pair for MSS in Octave: loads of 100 waves at 200 times on a ship that is held.
+
+    The time of Octave is that of its loop, without its start. Ours calls the compiled law from
+    Python.
+
+    Args:
+        folder: Folder of the toolbox.
+    """
+    toolbox = mss.check_installed(folder)
+    table, work = toolbox / mss.TABLES["tanker"], Path(mkdtemp(prefix="boatsim_peers_"))
+    found = read_mss(table, 0.0, 0.0, "load")
+    loads = WaveLoads(found.source, 0.0, found.frequency, found.heading, found.values)
+    sea = sea_of_table(work / "loads", loads, significant_height=5.0, modal_period=12.0)
+    times, psi = np.arange(0.0, 300.0, 1.5), np.array([-0.7])
+
+    def theirs() -> Seconds:
+        done = mss.run_mss(toolbox, table, work, waves_of(sea), times, psi)
+        return Seconds(done.seconds)
+
+    return Pair(
+        "MSS in Octave, loads of 100 waves, 200 times",
+        theirs,
+        {"law called from Python": lambda: loads_at(sea, times, -0.7)},
+    )
+
+
 def boatsim_runs(
     made: vessel.Vessel,
     commands: dict[str, float],
@@ -210,13 +269,16 @@ PEERS: dict[str, Callable[[], Pair]] = {
     "ShipMMG": compare_shipmmg_tanker,
     "MuJoCo's ellipsoid in fluid": compare_mujoco_fluid,
     "gym-sailing": compare_gymnasium_boat,
+    "MCSimPython": compare_mcsimpython_drillship,
 }
 
 
 def wall_time(work: Work) -> float:
-    """Return the wall time [s]."""
+    """Return the wall time, or the computing time that the program measured itself [s]."""
     begin = perf_counter()
-    work()
+    done = work()
+    if isinstance(done, Seconds):
+        return done
     return perf_counter() - begin
 
 
@@ -239,9 +301,11 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--mss", type=Path, help="folder of the MSS toolbox")
     given = parser.parse_args()
+    peers = PEERS | {"MSS": partial(compare_mss_loads, given.mss)}
     print(f"{'':44}{'[ms]':>12}{'times as':>12}\n{'':44}{'':12}{'fast':>12}")
-    for name, made in PEERS.items():
+    for name, made in peers.items():
         try:
             pair = made()
         except ImportError as missing:

@@ -14,7 +14,7 @@ from boatsim.hydrodynamics.axes import ASYMMETRY, asymmetry, with_memory
 from boatsim.hydrodynamics.mss import read_mss
 from boatsim.hydrodynamics.nemoh import RADIATION, read_nemoh
 from boatsim.hydrodynamics.rao_csv import read_rao_csv
-from boatsim.hydrodynamics.rao_table import Complex, RaoTable, at_origin, opposite_axes
+from boatsim.hydrodynamics.rao_table import Complex, Kind, RaoTable, at_origin, opposite_axes
 from boatsim.hydrodynamics.response import Ballast
 from boatsim.hydrodynamics.veres import SUFFIXES, read_veres
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit, read_wamit_operators
@@ -153,15 +153,20 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
         words += f" at {table.speed:g} m/s"
     renamed = write_wave_loads(
         out,
-        WaveLoads(words, table.depth, table.frequency, table.heading, np.asarray(loads)),
+        WaveLoads(
+            words, table.depth, table.frequency, table.heading, np.asarray(loads), table.drift
+        ),
     )
     notes += _renaming(out, renamed)
+    kinds = f"loads in {', '.join(axes)}"
+    if table.drift is not None:
+        kinds += ", and mean drift"
     print_lines(
         [
             escape_for_terminal(words),
             f"{len(table.frequency)} frequencies from {table.frequency[0]:.3g} to "
             f"{table.frequency[-1]:.3g} rad/s, {len(table.heading)} headings",
-            f"loads in {', '.join(axes)}",
+            kinds,
             *_largest_loads(loads, table, axes),
         ]
     )
@@ -187,7 +192,8 @@ def _read_operators(path: Path, options: HydrodynamicsOptions) -> RaoTable:
     if suffix in SUFFIXES:
         return read_veres(path, options.depth, options.speed)
     if suffix == ".mat":
-        return read_mss(path, options.depth, options.speed)
+        kind: Kind = "load" if options.vessel is None else "motion"
+        return read_mss(path, options.depth, options.speed, kind)
     if suffix == ".csv":
         found = read_rao_csv(path, options.depth)
     else:

@@ -14,7 +14,8 @@ CLOSE = 1e-6  # [rad] between headings that are the same
 def on_starboard_side(heading: Array, excitation: Array, path: Path) -> tuple[Array, Array]:
     """Return headings from 0 to pi, and the excitation of waves that run to them.
 
-    Those to port are mirrored at the plane of symmetry of the hull.
+    Those to port are mirrored at the plane of symmetry of the hull, where the other side lacks
+    them.
 
     Args:
         heading: Directions to which the waves run (H,), clockwise from x [rad].
@@ -25,14 +26,17 @@ def on_starboard_side(heading: Array, excitation: Array, path: Path) -> tuple[Ar
         BadInput: There is no heading.
     """
     found: dict[float, Array] = {}
+    mirrored: dict[float, Array] = {}
     for h, angle in enumerate(heading):
         turned = (angle + np.pi) % (2.0 * np.pi) - np.pi
         values = excitation[:, h]
         if abs(turned + np.pi) < CLOSE:
             turned = np.pi
+        side, key = found, round(abs(turned), 6)
         if turned < -CLOSE:
-            turned, values = -turned, values * MIRROR
-        found.setdefault(round(abs(turned), 6), values)
+            side, values = mirrored, values * MIRROR
+        side.setdefault(key, values)
+    found = mirrored | found
     if not found:
         raise BadInput(f"{path}: there is no excitation")
     angles = sorted(found)

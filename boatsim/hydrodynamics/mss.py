@@ -1,6 +1,7 @@
 """Response amplitude operators from a vessel structure of T. I. Fossen's MSS toolbox, NAME.mat.
 
 The structure has SNAME axes, phases that lead the crest, and headings of 0 for waves from astern.
+Its mean drift has the axes surge, sway and yaw, and none of phase.
 It does not contain the point to which motions refer: that of ShipX is an option of its run. The
 vessel's origin is taken, at the mass centre and in the waterplane.
 """
@@ -11,20 +12,22 @@ from typing import Any
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.hydrodynamics.rao_table import RaoTable, complete_table
+from boatsim.hydrodynamics.rao_table import Kind, RaoTable, complete_table
 from boatsim.physics.signals import AXES, Array
 
-FIELDS = {"motion": "motionRAO", "load": "forceRAO"}
+FIELDS: dict[Kind, str] = {"motion": "motionRAO", "load": "forceRAO"}
+DRIFT_AXES = (0, 1, 5)  # surge, sway and yaw, in this order in the structure
 SAME_SPEED = 1e-3  # [m/s]
 
 
-def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
-    """Read the motions of a vessel structure, or its loads if it has no motions.
+def read_mss(path: Path, depth: float, speed: float, kind: Kind = "motion") -> RaoTable:
+    """Read motions or loads of a vessel structure, and its mean drift if it has one.
 
     Args:
         path: The file.
         depth: Depth of the water [m]; 0 for deep water.
         speed: Forward speed [m/s], one of those in the file.
+        kind: Motions or loads; a structure that has only the other ones gives these.
 
     Raises:
         BadInput: The file has no such structure, or not this speed.
@@ -33,16 +36,18 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
 
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
+    drift: tuple[Array, list[Array]] | None = None
     try:
         vessel: Any = loadmat(path, squeeze_me=True, struct_as_record=False)["vessel"]
-        kind = "motion" if hasattr(vessel, FIELDS["motion"]) else "load"
+        if not hasattr(vessel, FIELDS[kind]):
+            kind = "load" if kind == "motion" else "motion"
         operators = getattr(vessel, FIELDS[kind])
         speeds = np.atleast_1d(np.asarray(vessel.velocities, dtype=float))
         heading = np.atleast_1d(np.asarray(vessel.headings, dtype=float))
-        frequency = np.atleast_1d(np.asarray(operators.w, dtype=float))
-        shape = (len(frequency), len(heading), -1)
-        size = [np.asarray(one, dtype=float).reshape(shape) for one in operators.amp]
-        phase = [np.asarray(one, dtype=float).reshape(shape) for one in operators.phase]
+        frequency, size = _tables(operators, operators.amp, len(heading))
+        _, phase = _tables(operators, operators.phase, len(heading))
+        if hasattr(vessel, "driftfrc"):
+            drift = _tables(vessel.driftfrc, vessel.driftfrc.amp[:3], len(heading))
     except Exception:  # whatever the reader raises for damaged files and those of other programs
         raise BadInput(
             f"{path}: there is no structure `vessel` of MSS with motionRAO or forceRAO"
@@ -61,13 +66,47 @@ def read_mss(path: Path, depth: float, speed: float) -> RaoTable:
     grid = complete_table(waves, values.reshape(-1, 6), path)
     return RaoTable(
         source=f"MSS, {path.name}",
-        kind="motion" if kind == "motion" else "load",
+        kind=kind,
         frequency=grid[0],
         heading=grid[1],
         values=grid[2],
         depth=depth,
         speed=float(speeds[place]),
+        drift=None if drift is None else _mean_drift(drift, frequency, waves, place, path),
     )
+
+
+def _tables(operators: Any, values: Any, headings: int) -> tuple[Array, list[Array]]:
+    """Return frequencies (N,) and a table (N, H, speeds) of each axis of a part of a structure."""
+    frequency = np.atleast_1d(np.asarray(operators.w, dtype=float))
+    shape = (len(frequency), headings, -1)
+    return frequency, [np.asarray(one, dtype=float).reshape(shape) for one in values]
+
+
+def _mean_drift(
+    drift: tuple[Array, list[Array]], frequency: Array, waves: Array, place: int, path: Path
+) -> Array:
+    """Return the mean drift (N, H, 3) at the frequencies of the operators.
+
+    Args:
+        drift: Frequencies of the drift, and a table of each axis.
+        frequency: Frequencies of the operators (N,) [rad/s].
+        waves: Frequency and direction of each row of the grid (R, 2).
+        place: Number of the speed.
+        path: File, for messages.
+
+    Raises:
+        BadInput: An axis is missing, a value is not finite, or the speed has no drift.
+    """
+    own, tables = drift
+    if len(tables) < len(DRIFT_AXES) or any(one.shape[2] <= place for one in tables):
+        raise BadInput(f"{path}: driftfrc needs surge, sway and yaw at each of the velocities")
+    rows = np.zeros((len(frequency), len(waves) // len(frequency), 6), dtype=complex)
+    for axis, table in zip(DRIFT_AXES, tables, strict=False):
+        for h, column in enumerate(table[:, :, place].T):
+            rows[:, h, axis] = np.interp(frequency, own, column)
+    values = complete_table(waves, rows.reshape(-1, 6), path)[2]
+    return np.asarray(values[..., DRIFT_AXES].real)
 
 
 def _check_sizes(size: list[Array], phase: list[Array], speeds: int, path: Path) -> None:

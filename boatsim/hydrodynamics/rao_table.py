@@ -35,6 +35,8 @@ class RaoTable:
         speed: Forward speed of the vessel [m/s].
         point: Place ahead of the vessel's origin and below it, to which the values and the phase
             of the wave refer [m].
+        drift: Mean drift in surge, sway and yaw (N, H, 3) per square of the amplitude, about the
+            vessel's origin [N/m^2, N/m]; None if the table has none.
 
     Raises:
         BadInput: The speed is negative.
@@ -48,6 +50,7 @@ class RaoTable:
     depth: float = 0.0
     speed: float = 0.0
     point: tuple[float, float] = (0.0, 0.0)
+    drift: Array | None = None
 
     def __post_init__(self) -> None:
         if self.speed < 0.0:

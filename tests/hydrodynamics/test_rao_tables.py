@@ -138,6 +138,66 @@ def test_motions_of_mss(tmp_path: Path) -> None:
     check_follower(read_mss(tmp_path / "ship.mat", 0.0, 0.0))
 
 
+def write_mss_of_both(path: Path, yaw_to_port: float = -1.0) -> Path:
+    """Vessel structure of MSS with motions of a follower, ten times as large loads, and drift."""
+    headings = np.radians(np.arange(0.0, 360.0, 30.0))
+    table = np.array([[follower(w, b) for b in headings] for w in FREQUENCIES])
+    parts: dict[str, object] = {"headings": headings, "velocities": 0.0}
+    for name, factor in (("motionRAO", 1.0), ("forceRAO", 10.0)):
+        size, phase = np.empty(6, dtype=object), np.empty(6, dtype=object)
+        for i in range(6):
+            size[i], phase[i] = factor * np.abs(table[:, :, i]), np.angle(table[:, :, i])
+        parts[name] = {"amp": size, "phase": phase, "w": FREQUENCIES}
+    # linear in the frequency, at other frequencies than the operators
+    own, drift = np.array([0.2, 0.5, 0.7]), np.empty(6, dtype=object)
+    side = np.where(np.sin(headings) < -1e-9, yaw_to_port, 1.0)
+    yaw = np.abs(np.sin(2.0 * headings)) * side
+    for i, over_heading in enumerate((np.cos(headings), np.sin(headings), yaw)):
+        drift[i] = np.outer(own, over_heading)
+    for i in range(3, 6):
+        drift[i] = np.zeros((3, len(headings)))
+    savemat(path, {"vessel": {**parts, "driftfrc": {"amp": drift, "w": own}}})
+    return path
+
+
+@pytest.mark.parametrize("yaw_to_port", [-1.0, 1.0])
+def test_loads_and_mean_drift_of_mss(tmp_path: Path, yaw_to_port: float) -> None:
+    path = write_mss_of_both(tmp_path / "ship.mat", yaw_to_port)
+    check_follower(read_mss(path, 0.0, 0.0))
+    found = read_mss(path, 0.0, 0.0, "load")
+    assert found.kind == "load"
+    assert found.values[1, 2] == pytest.approx(10.0 * follower(0.4, np.radians(60.0)))
+    assert found.drift is not None
+    # waves that run to starboard count, whatever the other side of the file has
+    angle = np.radians(DIRECTIONS)
+    expected = np.stack([np.cos(angle), np.sin(angle), np.abs(np.sin(2.0 * angle))], axis=-1)
+    assert found.drift == pytest.approx(FREQUENCIES[:, None, None] * expected)
+
+
+def test_a_structure_of_mss_without_a_vessel_gives_its_loads_and_drift(tmp_path: Path) -> None:
+    path = write_mss_of_both(tmp_path / "ship.mat")
+    done = CliRunner().invoke(app, ["hydrodynamics", str(path), "--out", str(tmp_path / "loads")])
+    assert done.exit_code == 0, done.output
+    assert "loads of MSS, ship.mat" in done.output and "yaw, and mean drift" in done.output
+    written = read_wave_loads(tmp_path / "loads")
+    assert written.drift is not None
+    assert written.drift[2, 0, 0] == pytest.approx(0.6)
+
+
+def test_mean_drift_of_mss_that_lacks_an_axis_is_refused(tmp_path: Path) -> None:
+    size = np.empty(2, dtype=object)
+    size[0] = size[1] = np.ones((len(FREQUENCIES), len(DIRECTIONS)))
+    loads = np.empty(6, dtype=object)
+    for i in range(6):
+        loads[i] = size[0]
+    operators = {"amp": loads, "phase": loads, "w": FREQUENCIES}
+    vessel = {"headings": np.radians(DIRECTIONS), "velocities": 0.0, "forceRAO": operators}
+    vessel["driftfrc"] = {"amp": size, "w": FREQUENCIES}
+    savemat(tmp_path / "ship.mat", {"vessel": vessel})
+    with pytest.raises(BadInput, match="driftfrc needs surge, sway and yaw"):
+        read_mss(tmp_path / "ship.mat", 0.0, 0.0)
+
+
 def write_csv(
     path: Path, motion: Callable[[float, float], Complex], head: str = "", turn: float = 0.0
 ) -> Path:

@@ -18,13 +18,17 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from boatsim.errors import BadInput
 from boatsim.physics.coefficients.table import WaveLoads
+from boatsim.physics.debugging import interpreted
 from boatsim.physics.signals import Array, Wrench
 
 HEAD = 4  # numbers of the table before the values
 VALUES, DRIFTS = 12, 3  # of each frequency and heading, of excitation and of drift
-# Sizes of the grid, by which the values in between err by less than 1 % of the largest one for
-# hulls in waves of half their length and more (tests)
-FREQUENCIES, HEADINGS = 96, 25
+# Numbers of frequencies and of headings, of which the first is taken whose values in between err by
+# less than `ERROR` of the largest one. A hull in waves of half its length and more needs the first.
+# A table that extends to shorter waves needs more frequencies, and a grid that has its headings.
+FREQUENCIES = (96, 192, 384, 768)
+HEADINGS = (25, 31, 37, 49, 61, 73)
+ERROR = 0.01
 # Sign of a component in the mirror at the plane of symmetry of the hull
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 DRIFT_MIRROR = np.array([1.0, -1.0, -1.0])  # of surge, sway and yaw
@@ -65,35 +69,92 @@ def excitation_grid(found: WaveLoads, label: str) -> tuple[float, ...]:
     """
     heading = found.heading
     check_headings(heading, f"{label}: the headings of the excitation")
-    frequency = np.linspace(found.frequency[0], found.frequency[-1], FREQUENCIES)
-    over_frequency = CubicSpline(found.frequency, found.excitation)(frequency)
-    grid = _over_headings(heading, over_frequency, MIRROR)
+    spline = CubicSpline(found.frequency, found.excitation)
+    frequency = _grid_frequencies(found, spline)
+    angles = _grid_headings(found)
+    grid = _over_headings(heading, spline(frequency), MIRROR)(angles)
     pairs = np.stack([grid.real, grid.imag], axis=-1)
-    drift = np.zeros((FREQUENCIES, HEADINGS, DRIFTS))
+    drift = np.zeros((len(frequency), len(angles), DRIFTS))
     if found.drift is not None:
         # the drift can have a narrow peak at a resonance, next to which a spline would oscillate
         over_frequency = PchipInterpolator(found.frequency, found.drift)(frequency)
-        drift = _over_headings(heading, over_frequency, DRIFT_MIRROR)
+        drift = _over_headings(heading, over_frequency, DRIFT_MIRROR)(angles)
     step = frequency[1] - frequency[0]
-    head = (float(frequency[0]), float(step), float(FREQUENCIES), float(HEADINGS))
+    head = (float(frequency[0]), float(step), float(len(frequency)), float(len(angles)))
     return (*head, *pairs.ravel().tolist(), *drift.ravel().tolist())
 
 
-def _over_headings(heading: Array, values: Array, mirror: Array) -> Array:
-    """Return values (F, H, C) at the headings of the grid.
+def _grid_frequencies(found: WaveLoads, spline: CubicSpline) -> Array:
+    """Return equally spaced frequencies between which a linear function follows the excitation.
+
+    Args:
+        found: The table.
+        spline: Its excitation over frequency, of shape (H, 6) at each.
+    """
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    for count in FREQUENCIES:
+        grid = np.linspace(found.frequency[0], found.frequency[-1], count)
+        values = spline(grid)
+        middle = spline(0.5 * (grid[1:] + grid[:-1]))
+        error = np.abs(middle - 0.5 * (values[1:] + values[:-1])).max(axis=(0, 1))
+        if np.all(error <= ERROR * largest):
+            break
+    return grid
+
+
+def _grid_headings(found: WaveLoads) -> Array:
+    """Return equally spaced headings between which the law follows the excitation.
+
+    The error is that at the headings of the table and in the middle between them.
+
+    Args:
+        found: The table.
+    """
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    spline = _over_headings(found.heading, found.excitation, MIRROR)
+    own = found.heading
+    places = np.clip(np.append(own, 0.5 * (own[1:] + own[:-1])), 0.0, pi)
+    exact = spline(places)
+    for count in HEADINGS:
+        grid = np.linspace(0.0, pi, count)
+        values = spline(grid)
+        error = np.abs(_between_headings(values, places) - exact).max(axis=(0, 1))
+        if np.all(error <= ERROR * largest):
+            break
+    return grid
+
+
+def _between_headings(values: Array, places: Array) -> Array:
+    """Return the excitation (N, P, 6) at headings between those of a grid, as the law does.
+
+    Args:
+        values: Excitation on the grid (N, H, 6).
+        places: Headings (P,) from 0 to pi [rad].
+    """
+    beyond = values[:, 1:2] * MIRROR, values[:, -2:-1] * MIRROR
+    around = np.concatenate([beyond[0], values, beyond[1]], axis=1)
+    bearing = places / pi * (values.shape[1] - 1.0)
+    left = np.minimum(bearing.astype(int), values.shape[1] - 2)
+    weights = interpreted(cubic_weights)(bearing - left)
+    total = np.zeros((len(values), len(places), values.shape[2]), dtype=values.dtype)
+    for j, weight in enumerate(weights):
+        total += weight[None, :, None] * around[:, left + j]
+    return total
+
+
+def _over_headings(heading: Array, values: Array, mirror: Array) -> CubicSpline:
+    """Return a spline of values (F, H, C) over the heading, around the whole hull.
 
     Args:
         heading: Headings (H,) from 0 to pi [rad].
         values: Values at these headings.
         mirror: Signs of the components in the mirror (C,).
     """
-    # around the whole hull, so that the spline is periodic
     around = np.concatenate([heading, 2.0 * pi - heading[-2:0:-1], [2.0 * pi]])
     other = values[:, -2:0:-1] * mirror
     whole = np.concatenate([values, other, values[:, :1]], axis=1)
     around[0], around[len(heading) - 1] = 0.0, pi
-    spline = CubicSpline(around, whole, axis=1, bc_type="periodic")
-    return np.asarray(spline(np.linspace(0.0, pi, HEADINGS)))
+    return CubicSpline(around, whole, axis=1, bc_type="periodic")
 
 
 @njit(inline="always")

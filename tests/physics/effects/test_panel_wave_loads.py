@@ -10,8 +10,17 @@ from scipy.interpolate import CubicSpline
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, make_motion
-from boatsim.physics.coefficients.excitation_grid import mean_drift_force
-from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
+from boatsim.physics.coefficients.excitation_grid import (
+    excitation_force,
+    excitation_grid,
+    mean_drift_force,
+)
+from boatsim.physics.coefficients.files import (
+    read_coefficients,
+    read_wave_loads,
+    write_coefficients,
+)
+from boatsim.physics.coefficients.table import WaveLoads
 from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.batch import Batch
@@ -172,3 +181,56 @@ def test_drift_without_its_table_is_refused(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="drift = 1; .* has no drift.csv"):
         load_vessel("otter").with_effect(table)
     load_vessel("otter").with_effect(table | {"drift": 0.0})
+
+
+def table_of_long_hull(highest: float) -> WaveLoads:
+    """Loads of waves on two ends 246 m apart, whose sum and difference vary fast with frequency."""
+    frequency = np.append(np.linspace(0.05, 1.2, 50), np.arange(1.7, highest, 0.5))
+    heading = np.linspace(0.0, pi, 19)
+    return WaveLoads("two ends", 0.0, frequency, heading, load_of_ends(frequency, heading))
+
+
+def load_of_ends(frequency: Array, heading: Array) -> Array:
+    """Complex loads (N, H, 6): a force on each end, less in short waves."""
+    number = frequency**2 / 9.80665
+    size = np.exp(-10.0 * number)[:, None]
+    turn = 123.0 * number[:, None] * np.cos(heading)
+    loads = np.zeros((len(frequency), len(heading), 6), dtype=complex)
+    loads[..., 2] = -size * np.cos(turn)
+    loads[..., 4] = -1j * 123.0 * size * np.sin(turn)
+    return loads
+
+
+@pytest.mark.parametrize("highest", [1.25, 6.0])
+def test_a_table_down_to_short_waves_is_as_fine_as_one_of_long_waves(highest: float) -> None:
+    found = table_of_long_hull(highest)
+    exact = CubicSpline(found.frequency, found.excitation)
+    table = np.array([*excitation_grid(found, "two ends"), 0.0])
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    for w in np.linspace(0.2, 1.1, 37):
+        for h in (0, 9, 18):
+            ahead, across = np.cos(found.heading[h]), np.sin(found.heading[h])
+            place = (w, ahead, across)
+            real = np.array(excitation_force(*place, 1.0, 0.0, table, np.int64(0)))
+            imaginary = np.array(excitation_force(*place, 0.0, -1.0, table, np.int64(0)))
+            error = np.abs(real + 1j * imaginary - exact(w)[h])
+            assert np.all(error <= 0.01 * largest)
+
+
+def test_loads_at_headings_of_the_table_are_those_of_the_table() -> None:
+    # headings every 10 degrees, of which every second is no multiple of a 24th of pi
+    found = table_of_long_hull(1.25)
+    table = np.array([*excitation_grid(found, "two ends"), 0.0])
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    for k in (20, 40, 49):
+        for h, heading in enumerate(found.heading):
+            place = (found.frequency[k], np.cos(heading), np.sin(heading))
+            real = np.array(excitation_force(*place, 1.0, 0.0, table, np.int64(0)))
+            imaginary = np.array(excitation_force(*place, 0.0, -1.0, table, np.int64(0)))
+            error = np.abs(real + 1j * imaginary - found.excitation[k, h])
+            assert np.all(error <= 0.01 * largest)
+
+
+def test_a_table_of_a_small_hull_keeps_the_smallest_grid() -> None:
+    grid = excitation_grid(read_wave_loads(OTTER), "otter")
+    assert grid[2:4] == (96.0, 25.0)

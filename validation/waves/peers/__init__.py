@@ -1,0 +1,1 @@
+"""The same sea, loads and motions in boatsim and in other programs."""
