@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import loading, pipeline
-from boatsim.diagnosis.checks import data_cleaning
+from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
@@ -92,22 +91,6 @@ def held_out_errors(
     return rms_errors(free_runs(diagnosis.problem, fits, held_out, window))
 
 
-def map_runs(diagnosis: Diagnosis, files: Sequence[Path], vessel: str) -> list[MappedRecording]:
-    """Return recordings as the diagnosis sees them: thinned, and mapped to its program.
-
-    Args:
-        diagnosis: The diagnosis.
-        files: The recordings.
-        vessel: Name or path of the vessel.
-    """
-    mapped = []
-    for file in files:
-        recording, boat = loading.open_recording(file, vessel, ())
-        cleaned = data_cleaning.clean_recording(recording, boat)
-        mapped.append(diagnosis.map_recording(cleaned, vessel=boat))
-    return mapped
-
-
 def diagnose_set(
     title: str,
     fitted: Sequence[Path],
@@ -138,13 +121,13 @@ def diagnose_set(
     print_statements(title, diagnosis, cpu_s)
     write_diagnosis(diagnosis, out)
     print(f"  report: {out / 'report.html'}", flush=True)
-    mapped = map_runs(diagnosis, held_out, vessel)
-    errors = {window: held_out_errors(diagnosis, mapped, window) for window in windows}
+    runs = diagnosis.held_out
+    errors = {window: held_out_errors(diagnosis, runs, window) for window in windows}
     by_source = None
     if source:
         fits = compared_fits(diagnosis.ranking)
-        runs = free_runs(diagnosis.problem, fits, mapped, windows[0], source.skipped)
-        by_source = rms_errors([run for run in runs if source.contains(run)])
+        begun = free_runs(diagnosis.problem, fits, runs, windows[0], source.skipped)
+        by_source = rms_errors([run for run in begun if source.contains(run)])
     return Figures(title, diagnosis, errors, cpu_s, by_source)
 
 

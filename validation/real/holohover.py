@@ -28,7 +28,6 @@ from validation.real.figures import (
     diagnose_set,
     error_rows,
     held_out_errors,
-    map_runs,
     print_figures,
 )
 
@@ -244,19 +243,18 @@ def write_runs(kind: str, vessel: Path) -> dict[str, Path]:
     return files
 
 
-def print_build(figures: Figures, build: str, files: Sequence[Path], vessel: str) -> None:
+def print_build(figures: Figures, build: str, names: Sequence[str]) -> None:
     """Print the errors of free runs on the held-out runs of one build.
 
     Args:
         figures: Figures of the set, with its diagnosis.
         build: Name of the build.
-        files: Held-out runs of the build.
-        vessel: File of the vessel.
+        names: Names of the held-out runs of the build.
     """
-    mapped = map_runs(figures.diagnosis, files, vessel)
+    own = [run for run in figures.diagnosis.held_out if run.name in names]
     rows = []
     for window in WINDOWS:
-        families = held_out_errors(figures.diagnosis, mapped, window)
+        families = held_out_errors(figures.diagnosis, own, window)
         rows += error_rows(f"{window:g} s", families, UNITS)
     print_table(f"{figures.title}, build {build}", HEADER, rows)
 
@@ -277,7 +275,7 @@ def main() -> None:
         figures = diagnose_set(title, fitted, held_out, str(vessel), WINDOWS, report)
         print_figures(figures, UNITS)
         for build, runs in BUILDS.items():
-            print_build(figures, build, [files[run] for run in runs], str(vessel))
+            print_build(figures, build, runs)
 
 
 if __name__ == "__main__":

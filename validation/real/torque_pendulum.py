@@ -39,7 +39,6 @@ from validation.real.common import (
 from validation.real.figures import (
     Figures,
     diagnose_set,
-    map_runs,
     print_figures,
     split_groups,
 )
@@ -111,12 +110,12 @@ def median_errors(
     return dict(zip(MODELS, np.median(rows, axis=0).tolist(), strict=True))
 
 
-def with_medians(figures: Figures, held_out: Sequence[Path]) -> Figures:
+def with_medians(figures: Figures) -> Figures:
     """Return figures whose errors are medians over windows, in addition to the rms over all."""
-    mapped = map_runs(figures.diagnosis, held_out, VESSEL)
+    runs = figures.diagnosis.held_out
     errors = {}
     for window, families in figures.errors.items():
-        median = median_errors(figures.diagnosis, mapped, window)
+        median = median_errors(figures.diagnosis, runs, window)
         errors[window] = {**families, "roll_median_rad": median}
     return replace(figures, errors=errors)
 
@@ -137,7 +136,7 @@ def print_set(title: str, runs: dict[str, Path], out: Path) -> None:
         "roll_median_rad": ("roll, median over windows [deg]", DEG),
         "roll_rms_rad": ("roll, rms over windows [deg]", DEG),
     }
-    print_figures(with_medians(found, tested), units)
+    print_figures(with_medians(found), units)
 
 
 def print_heavy(run: Path, corrected: Path) -> None:
