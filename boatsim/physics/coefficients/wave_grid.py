@@ -6,7 +6,7 @@ compiled laws read begins a grid with the lowest frequency [rad/s], the distance
 other side of the hull follow from its symmetry.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import atan2, pi
 from typing import Any, NamedTuple
 
@@ -22,7 +22,8 @@ from boatsim.physics.signals import Array
 HEAD = 4  # numbers of a table that describe its grid
 # Numbers of frequencies and of headings, of which the first is taken whose values in between are
 # accurate enough. The excitation of the Otter, 2 m long, in waves of half its length and more needs
-# 96 and 37. A table that extends to shorter waves needs more.
+# 96 and 37. A table that extends to shorter waves needs more. If the headings of a table are
+# equally spaced, only numbers are taken with which they are on the grid.
 FREQUENCIES = (96, 192, 384, 768)
 HEADINGS = (25, 31, 37, 49, 61, 73)
 ERROR = 0.01  # largest error of values on a grid, over the largest value of the axis
@@ -109,12 +110,26 @@ def grid_headings(
     between = heading[:-1, None] + shares * np.diff(heading)[:, None]
     places = np.clip(np.append(between, heading[-1]), 0.0, pi)
     exact = spline(places)
-    for count in HEADINGS:
+    for count in _heading_counts(heading):
         grid = np.linspace(0.0, pi, count)
         found = np.abs(_between_headings(spline(grid), places, mirror) - exact)
         if np.all(found <= error * largest):
             break
     return grid
+
+
+def _heading_counts(heading: Array) -> Sequence[int]:
+    """Return the numbers of headings of a grid to try, increasing.
+
+    Args:
+        heading: Headings of the table (H,) from 0 to pi [rad].
+    """
+    intervals, counts = len(heading) - 1, []
+    if np.ptp(np.diff(heading)) < CLOSE:
+        for count in range(intervals + 1, HEADINGS[-1] + 1, intervals):
+            if count >= HEADINGS[0]:
+                counts.append(count)
+    return counts or HEADINGS
 
 
 def _between_headings(values: Values, places: Array, mirror: Array) -> Any:
