@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.coefficients.excitation_grid import MIRROR
+from boatsim.physics.coefficients.wave_grid import MIRROR
 from boatsim.physics.signals import Array
 
 CLOSE = 1e-6  # [rad] between headings that are the same

@@ -18,6 +18,7 @@ from validation.waves import (
     righting_arms,
     section,
     wigley,
+    wigley_pitch,
 )
 
 WORK = Path("out/validation/waves")
@@ -104,6 +105,35 @@ def print_wigley(folder: Path) -> None:
                     f"{errors.within[place]} of {errors.rows} within 10 %, largest error "
                     f"{100 * errors.largest[place]:.0f} %, mean {100 * errors.mean[place]:+.0f} %"
                 )
+
+
+def print_wigley_pitch(folder: Path) -> None:
+    """Print what could change the computed pitch of the Wigley hulls."""
+    print("\nPitch of the Wigley hulls over the slope of the wave; fine: finer mesh; surging:")
+    print(
+        f"free in surge; higher: mass centre {wigley_pitch.HIGHER:g} m higher; gyradius: "
+        f"{100 * (wigley_pitch.LARGER - 1):.0f} % larger; wave:"
+    )
+    print("moment of the undisturbed wave over the stiffness, integrated over the lines; missing:")
+    print("further moment of inertia, over the computed added one, that gives the measured pitch")
+    print("hull  wave / L  measured  panels   fine  surging  higher  gyradius   wave  missing")
+    every = []
+    for hull in wigley.HULLS:
+        rows = wigley_pitch.pitch_study(folder, hull)
+        every += rows
+        for row in rows:
+            measured, missing = "-", "-"
+            if not np.isnan(row.measured):
+                measured, missing = f"{row.measured:.3f}", f"{row.inertia:.2f}"
+            cells = (f"{row.panels:6.3f}", f"{row.fine:5.3f}", f"{row.surging:7.3f}")
+            cells += (f"{row.higher:6.3f}", f"{row.gyradius:8.3f}", f"{row.undisturbed:5.3f}")
+            text = "  ".join(cells)
+            print(f"{hull.name:4}  {row.ratio:8.2f}  {measured:>8}  {text}  {missing:>7}")
+    counts = []
+    for name in ("panels", "fine", "surging", "higher", "gyradius"):
+        counts.append(f"{name} {wigley_pitch.rows_within(every, name)}")
+    known = sum(not np.isnan(row.measured) for row in every)
+    print(f"within 10 % of the measured pitch, of {known} waves: {', '.join(counts)}")
 
 
 def print_righting_arms() -> None:
@@ -238,6 +268,7 @@ def main() -> None:
         print_cylinder(folder)
         print_drift(folder)
         print_wigley(folder)
+        print_wigley_pitch(folder)
     else:
         print("hulls by boundary elements: skipped, Capytaine is not installed")
     print_regular(folder)

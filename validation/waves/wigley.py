@@ -101,15 +101,17 @@ def half_breadth(hull: Hull, x: Array, z: Array) -> Array:
     return np.asarray(0.5 * hull.beam * along * (1.0 - zeta**2))
 
 
-def write_hull(path: Path, hull: Hull) -> None:
+def write_hull(path: Path, hull: Hull, stations: int = STATIONS, lines: int = LINES) -> None:
     """Write the closed mesh of a hull.
 
     Args:
         path: The OBJ file.
         hull: The hull.
+        stations: Number of panels over half the length.
+        lines: Number of panels over the draught.
     """
-    x = 0.5 * LENGTH * np.sin(np.linspace(0.0, 0.5 * np.pi, STATIONS + 1))
-    z = np.append(np.linspace(-DRAUGHT, 0.0, LINES + 1), 0.25 * DRAUGHT)
+    x = 0.5 * LENGTH * np.sin(np.linspace(0.0, 0.5 * np.pi, stations + 1))
+    z = np.append(np.linspace(-DRAUGHT, 0.0, lines + 1), 0.25 * DRAUGHT)
     triangles = closed_hull(x, z, lambda along, up: half_breadth(hull, along, up))
     write_obj(path, triangles, f"Wigley hull {hull.name}, z = 0 at the waterline")
 
@@ -174,6 +176,29 @@ def motions(hull: Hull, found: Coefficients, excitation: Array) -> Array:
     return np.array(rows)
 
 
+def computed(
+    path: Path, hull: Hull, ratios: list[float], stations: int = STATIONS, lines: int = LINES
+) -> Coefficients:
+    """Return the coefficients of a hull in head waves, by decreasing wavelength.
+
+    Args:
+        path: OBJ file to write.
+        hull: The hull.
+        ratios: Wavelengths over the length, decreasing.
+        stations: Number of panels over half the length.
+        lines: Number of panels over the draught.
+
+    Raises:
+        BadInput: Capytaine is not installed.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_hull(path, hull, stations, lines)
+    frequencies = [float(np.sqrt(2.0 * np.pi * GRAVITY / (r * LENGTH))) for r in ratios]
+    mesh = HullMesh(path, DRAUGHT, density=DENSITY)
+    rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
+    return coefficients_of_rows(rows, mesh, [HEAD])
+
+
 def responses(folder: Path, hull: Hull) -> list[Response]:
     """Return measured and computed responses of a hull, by increasing wavelength.
 
@@ -184,14 +209,9 @@ def responses(folder: Path, hull: Hull) -> list[Response]:
     Raises:
         BadInput: Capytaine is not installed.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"wigley_{hull.name}.obj"
-    write_hull(path, hull)
     ratios = sorted(hull.measured, reverse=True)
-    frequencies = [float(np.sqrt(2.0 * np.pi * GRAVITY / (r * LENGTH))) for r in ratios]
-    mesh = HullMesh(path, DRAUGHT, density=DENSITY)
-    rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
-    found = coefficients_of_rows(rows, mesh, [HEAD])
+    found = computed(path, hull, ratios)
     by_panels = _without_units(motions(hull, found, found.excitation[:, 0]))
     by_strips = _without_units(motions(hull, found, strip_excitation(path, found)))
     results = []

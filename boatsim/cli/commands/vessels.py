@@ -189,7 +189,10 @@ def hydrostatics(
     density: Annotated[
         float | None,
         typer.Option(
-            min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3] [default: 1025]."
+            min=100.0,
+            max=5000.0,
+            metavar="KG",
+            help="Density of the water [kg/m^3] [default: 1025].",
         ),
     ] = None,
     scale: Annotated[
@@ -257,10 +260,12 @@ def hydrodynamics(
         ),
     ] = None,
     density: Annotated[
-        float, typer.Option(min=100.0, max=5000.0, metavar="KG", help="Of the water [kg/m^3].")
+        float,
+        typer.Option(min=100.0, max=5000.0, metavar="KG", help="Density of the water [kg/m^3]."),
     ] = 1025.0,
     depth: Annotated[
-        float, typer.Option(min=0.0, max=11000.0, metavar="M", help="Of the water; 0: deep [m].")
+        float,
+        typer.Option(min=0.0, max=11000.0, metavar="M", help="Depth of the water; 0: deep [m]."),
     ] = 0.0,
     origin: Annotated[
         float,
@@ -301,18 +306,27 @@ def hydrodynamics(
     ] = 0.0,
     roll_gyradius: Annotated[
         float | None,
-        typer.Option(min=1e-3, metavar="M", help="Of roll [m] [default: 0.35 of the beam]."),
+        typer.Option(
+            min=1e-3,
+            metavar="M",
+            help="Radius of gyration in roll [m] [default: 0.35 of the beam].",
+        ),
     ] = None,
     pitch_gyradius: Annotated[
         float | None,
         typer.Option(
-            min=1e-3, metavar="M", help="Of pitch and yaw [m] [default: 0.25 of the length]."
+            min=1e-3,
+            metavar="M",
+            help="Radius of gyration in pitch and yaw [m] [default: 0.25 of the length].",
         ),
     ] = None,
     roll_damping: Annotated[
         float,
         typer.Option(
-            min=0.0, max=1.0, metavar="X", help="Of roll, added to that of waves; 1: critical."
+            min=0.0,
+            max=1.0,
+            metavar="X",
+            help="Damping of roll, added to that of waves; 1: critical.",
         ),
     ] = 0.0,
     compare: Annotated[
@@ -349,8 +363,8 @@ def hydrodynamics(
 
     The effects radiation_memory and panel_wave_loads of a vessel read the folder. The mean drift is
     that of the freely floating hull, which depends on its mass centre and its gyradii. Needs
-    boatsim[bem] for a mesh. Of response amplitude operators the folder has the loads that cause the
-    motions of --vessel, or those of the table.
+    boatsim[bem] for a mesh. Response amplitude operators of motions become the loads that cause the
+    motions of --vessel; those of loads are kept.
     """
     from boatsim.cli.hydrodynamics import HydrodynamicsOptions, write_hydrodynamics
 

@@ -10,8 +10,11 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import AXES, UNSET, Array, Boat, Force, Wrench, param, wrench
 from boatsim.physics.coefficients.drift_pairs import (
     NO_PAIRS,
+    added_wave,
     end_of_pairs,
+    no_waves,
     pair_amplitudes,
+    pair_products,
     pair_table,
     pair_weight,
 )
@@ -43,8 +46,8 @@ EMPTY = (1.0, 1.0, 2.0, 2.0, *[0.0] * 60, *NO_PAIRS, 0.0)
 def pair_drift(m: Any, q: Any, p: Array, table: Any, waves: Any) -> Wrench:
     """Return the slow drift of all pairs of waves of a sea.
 
-    The sum over pairs is a sum over components of the squares of sums over waves. Each pass over
-    the waves has four components.
+    The sum over pairs is a sum over products of two sums over waves. Each pass over the waves has
+    four products.
 
     Args:
         m: Motion of the hull.
@@ -59,7 +62,7 @@ def pair_drift(m: Any, q: Any, p: Array, table: Any, waves: Any) -> Wrench:
     X = Y = Z = K = M = N = 0.0
     sea = sea_state(q, p, waves)
     for group in range(int(p[table])):
-        a = b = d = e = f = g = h = i = 0.0
+        sums = no_waves()
         ahead, across, run = heading_of_waves(q.toward, m)
         for k in range(int(sea.number)):
             w, amplitude, phase = wave_component(k, q, sea, p, waves)
@@ -67,13 +70,9 @@ def pair_drift(m: Any, q: Any, p: Array, table: Any, waves: Any) -> Wrench:
                 ahead, across, run = heading_of_waves(wave_direction(k, q, p, waves), m)
             here = w * m.t - wave_number(w, q.depth) * run + phase + pi
             c, s = amplitude * cos(here), amplitude * sin(here)
-            u = pair_amplitudes(w, ahead, across, p, table, group)
-            a, b = a + u.real_1 * c - u.imaginary_1 * s, b + u.real_1 * s + u.imaginary_1 * c
-            d, e = d + u.real_2 * c - u.imaginary_2 * s, e + u.real_2 * s + u.imaginary_2 * c
-            f, g = f + u.real_3 * c - u.imaginary_3 * s, g + u.real_3 * s + u.imaginary_3 * c
-            h, i = h + u.real_4 * c - u.imaginary_4 * s, i + u.real_4 * s + u.imaginary_4 * c
-        one, two = a * a + b * b, d * d + e * e
-        three, four = f * f + g * g, h * h + i * i
+            wave = pair_amplitudes(w, ahead, across, p, table, group)
+            sums = added_wave(sums, wave, c, s)
+        one, two, three, four = pair_products(sums)
         at = pair_weight(p, table, group)
         X += p[at] * one + p[at + 1] * two + p[at + 2] * three + p[at + 3] * four
         Y += p[at + 4] * one + p[at + 5] * two + p[at + 6] * three + p[at + 7] * four

@@ -21,6 +21,7 @@ from boatsim.physics.coefficients.files import (
     write_coefficients,
 )
 from boatsim.physics.coefficients.table import WaveLoads
+from boatsim.physics.coefficients.wave_grid import over_headings
 from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
 from boatsim.physics.vessel import load_vessel
 from boatsim.simulate.batch import Batch
@@ -231,6 +232,30 @@ def test_loads_at_headings_of_the_table_are_those_of_the_table() -> None:
             assert np.all(error <= 0.01 * largest)
 
 
-def test_a_table_of_a_small_hull_keeps_the_smallest_grid() -> None:
-    grid = excitation_grid(read_wave_loads(OTTER), "otter")
-    assert grid[2:4] == (96.0, 25.0)
+def test_loads_of_the_otter_between_its_headings_are_those_of_a_spline() -> None:
+    found = read_wave_loads(OTTER)
+    grid = np.array([*excitation_grid(found, "otter"), 0.0])
+    largest = np.abs(found.excitation).max(axis=(0, 1))
+    mirror = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    spline = over_headings(found.heading, found.excitation, mirror)
+    for heading in np.radians(np.arange(1.25, 180.0, 2.5)):
+        exact = spline(heading)
+        for k in range(0, len(found.frequency), 4):
+            place = (found.frequency[k], np.cos(heading), np.sin(heading))
+            real = np.array(excitation_force(*place, 1.0, 0.0, grid, np.int64(0)))
+            imaginary = np.array(excitation_force(*place, 0.0, -1.0, grid, np.int64(0)))
+            assert np.all(np.abs(real + 1j * imaginary - exact[k]) <= 0.01 * largest)
+
+
+def test_a_table_of_a_small_hull_keeps_a_small_grid() -> None:
+    count, headings = excitation_grid(read_wave_loads(OTTER), "otter")[2:4]
+    assert count == 96.0 and headings <= 37.0
+
+
+def test_an_axis_of_rounding_does_not_enlarge_the_grid() -> None:
+    found = read_wave_loads(OTTER)
+    noise = np.random.default_rng(3).normal(size=found.excitation.shape[:2])
+    loads = found.excitation.copy()
+    loads[..., 1] = 1e-6 * noise * np.abs(loads[..., 0]).max()
+    noisy = replace(found, excitation=loads)
+    assert excitation_grid(noisy, "noisy")[2:4] <= (96.0, 37.0)
