@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.compiling import compiled, lean, merged
 from boatsim.physics.kernel.correction import update_by_measurement
 from boatsim.physics.kernel.matrices import (
     cholesky_solve,
+    complete_propagation,
     copy_square_matrix,
     copy_vector,
     matrix_exponential,
@@ -35,6 +36,7 @@ from boatsim.physics.kernel.records import (
     PassArrays,
     PassOptions,
     ProcessNoise,
+    SmootherWorkspace,
     StateEstimate,
     VesselNumbers,
     VesselState,
@@ -536,6 +538,45 @@ def kalman_filter(
     return likelihood
 
 
+@merged
+def smooth_row(
+    i: int,
+    history: FilterHistory,
+    gains: Array,
+    h: float,
+    noise: ProcessNoise,
+    work: SmootherWorkspace,
+    n: int,
+) -> None:
+    """Smooth the mean and the covariance of row i, h before the next row, which is smooth already.
+
+    Fills the gains of the row. The n entries of the state that are in use are smoothed.
+    """
+    means, covariances, transitions, predicted = history
+    ahead, cross, G, B, off = work
+    F = transitions[i + 1]
+    multiply_matrices(F, covariances[i], cross, n)  # F P
+    copy_square_matrix(cross, B, n)
+    complete_propagation(F, B, ahead, n)
+    add_process_noise(h, noise, ahead, F)
+    # Positions and rates are driven by the force alone: this keeps the matrix invertible.
+    for j in range(n):
+        ahead[j, j] *= 1.0 + 1e-9
+        ahead[j, j] += 1e-18
+    copy_square_matrix(ahead, B, n)
+    cholesky_solve(B, cross, n)
+    for j in range(n):
+        off[j] = means[i + 1, j] - predicted[i + 1, j]
+        for k in range(n):
+            G[j, k] = gains[i, j, k] = cross[k, j]
+            ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
+    propagate_covariance(G, ahead, B, n)
+    for j in range(n):
+        for k in range(n):
+            means[i, j] += G[j, k] * off[k]
+            covariances[i, j, k] += ahead[j, k]
+
+
 @compiled
 def smooth_states(
     history: FilterHistory, gains: Array, times: Array, force: LatentForce, p: Array, on: Any
@@ -544,33 +585,19 @@ def smooth_states(
 
     Fills the smoother gains (N, NZ, NZ).
     """
-    means, covariances, transitions, predicted = history
     s, w = oscillating_force(p, on), instrument_drift(p, on)
     m, n = state_sizes(s, w)
     noise = ProcessNoise(force, s, w, m, n)
-    ahead, cross = np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
-    G, work, off = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros(NZ)
+    square = (NZ, NZ)
+    work = SmootherWorkspace(
+        np.zeros(square), np.zeros(square), np.zeros(square), np.zeros(square), np.zeros(NZ)
+    )
     for i in range(len(times) - 2, -1, -1):
-        multiply_matrices(transitions[i + 1], covariances[i], cross, n)  # F P
-        copy_square_matrix(covariances[i], ahead, n)
-        propagate_covariance(transitions[i + 1], ahead, work, n)
-        add_process_noise(times[i + 1] - times[i], noise, ahead, transitions[i + 1])
-        # Positions and rates are driven by the force alone: this keeps the matrix invertible.
-        for j in range(n):
-            ahead[j, j] *= 1.0 + 1e-9
-            ahead[j, j] += 1e-18
-        copy_square_matrix(ahead, work, n)
-        cholesky_solve(work, cross, n)
-        for j in range(n):
-            off[j] = means[i + 1, j] - predicted[i + 1, j]
-            for k in range(n):
-                G[j, k] = gains[i, j, k] = cross[k, j]
-                ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
-        propagate_covariance(G, ahead, work, n)
-        for j in range(n):
-            for k in range(n):
-                means[i, j] += G[j, k] * off[k]
-                covariances[i, j, k] += ahead[j, k]
+        h = times[i + 1] - times[i]
+        if n == LASTING:  # the loops of the usual size are unrolled
+            smooth_row(i, history, gains, h, noise, work, LASTING)
+        else:
+            smooth_row(i, history, gains, h, noise, work, n)
 
 
 @compiled

@@ -188,6 +188,16 @@ class FilterWorkspace(NamedTuple):
     memory: Array  # (MEMORY,) state of the actuators at the begin of an interval
 
 
+class SmootherWorkspace(NamedTuple):
+    """Preallocated work arrays of the smoother."""
+
+    ahead: Array  # (NZ, NZ) predicted covariance of the next row
+    cross: Array  # (NZ, NZ) covariance of the next row's state with the row's own
+    G: Array  # (NZ, NZ) gains
+    B: Array  # (NZ, NZ)
+    off: Array  # (NZ,) correction of the next row's mean
+
+
 class FilterPass(NamedTuple):
     """Inputs that are common to all time steps of one run of the Kalman filter."""
 
