@@ -92,8 +92,8 @@ INVERT = 10
 # ------------------------------------------------------------------------------------------------
 
 
-@lean
-def predict_motion(
+@merged
+def advance_to_row(
     inputs: Inputs,
     i: int,
     delay: float,
@@ -101,12 +101,13 @@ def predict_motion(
     max_step: float,
     laws: LawArguments,
     plant: VesselState,
+    moves: bool,
 ) -> int:
-    """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
+    """Advance the actuators and, if `moves` is true, the motion from row i - 1 to row i, in place.
 
-    The filter uses it for its prediction. The motion of row i happened `delay` before its time.
-    `row` is the last row of commands used so far; returns the one used last. No step extends beyond
-    a change of an actuator's signal.
+    The motion of row i of a recording happened `delay` before its time. `row` is the last row of
+    commands used so far; returns the one used last. No step extends beyond a change of an
+    actuator's signal.
     """
     times, given, commands = inputs
     p, on, k = laws
@@ -125,9 +126,45 @@ def predict_motion(
         advance_actuators(commands[row], memory, dt, p, on, act)
         if HAS_ADVANCE_MOTION_MEMORY:
             advance_memory_of_motion(begin + done, y, dt, memory, act, p, on)
-        step_in_place(begin + done, y, dt, act, p, on, k, force)
+        if moves:
+            step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row
+
+
+@lean
+def predict_motion(
+    inputs: Inputs,
+    i: int,
+    delay: float,
+    row: int,
+    max_step: float,
+    laws: LawArguments,
+    plant: VesselState,
+) -> int:
+    """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
+
+    The filter uses it for its prediction. The arguments are those of `advance_to_row`.
+    """
+    return advance_to_row(inputs, i, delay, row, max_step, laws, plant, True)
+
+
+@lean
+def advance_at_rest(
+    inputs: Inputs,
+    i: int,
+    delay: float,
+    row: int,
+    max_step: float,
+    laws: LawArguments,
+    plant: VesselState,
+) -> int:
+    """Advance the actuators from row i - 1 to row i of a recording, in place.
+
+    The vessel moves as well only where its effects remember the motion.
+    """
+    moves = HAS_ADVANCE_MOTION_MEMORY
+    return advance_to_row(inputs, i, delay, row, max_step, laws, plant, moves)
 
 
 @lean
@@ -259,13 +296,15 @@ def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselS
             force[a] += mean1 * z[LASTING + 2 * a] + mean2 * z[LASTING + 2 * a + 1]
 
 
-@lean
-def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: Array) -> None:
-    """Predict the filter's covariance P over a time h.
+@merged
+def predict_covariance(
+    h: float, noise: ProcessNoise, P: Array, F: Array, work: Array, n: int
+) -> None:
+    """Predict the filter's covariance P over a time h, of the n entries of the state in use.
 
     The transition matrix F is extended from motion and latent forces to the whole state.
     """
-    m, n = noise.m, noise.n
+    m = noise.m
     for a in range(NY, LASTING):
         F[a, a] = exp(-h / noise.force.time_constant)
     if m > LASTING:
@@ -274,10 +313,7 @@ def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: 
         for i in range(n):
             F[i, j] = F[j, i] = 0.0
         F[j, j] = exp(-h / noise.instrument_drift.time)
-    if n == LASTING:
-        propagate_covariance(F, P, work, LASTING)
-    else:
-        propagate_covariance(F, P, work, n)
+    propagate_covariance(F, P, work, n)
     add_process_noise(h, noise, P, F)
 
 
@@ -509,7 +545,7 @@ def kalman_filter(
     if options.history:
         copy_vector(z, history.means[0])
         copy_vector(z, history.predicted[0])
-        copy_square_matrix(P, history.covariances[0], NZ)
+        copy_square_matrix(P, history.covariances[0], n)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
         copy_vector(z, about)
@@ -526,15 +562,18 @@ def kalman_filter(
         if i == 1:
             propagate_deviation(F, z, about, y)
         if options.gains:
-            predict_covariance(h, noise, P, F, work.B)
+            if n == LASTING:  # the loops of the usual size are unrolled
+                predict_covariance(h, noise, P, F, work.B, LASTING)
+            else:
+                predict_covariance(h, noise, P, F, work.B, n)
         predict_mean(h, noise, y, z)
         if options.history:
             copy_vector(z, history.predicted[i])
-            copy_square_matrix(F, history.transitions[i], NZ)
+            copy_square_matrix(F, history.transitions[i], n)
         likelihood += update_by_row(f, estimate, measured, i, options.gains, out)
         if options.history:
             copy_vector(z, history.means[i])
-            copy_square_matrix(P, history.covariances[i], NZ)
+            copy_square_matrix(P, history.covariances[i], n)
     return likelihood
 
 
@@ -622,17 +661,23 @@ def simulate_intervals(
     settle_actuators(inputs.commands[0], memory, p, on, act)
     y, delay, last = np.zeros(NY), motion_latency(p, on), np.int64(0)
     laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
-    saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
-    for i in range(1, len(times)):  # only for the actuators
-        copy_vector(memory, saved[i - 1])
-        rows[i - 1] = last
-        for j in range(NY):
-            y[j] = 0.0
-        last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
+    saved, rows = np.zeros((len(starts), MEMORY)), np.zeros(len(starts), dtype=np.int64)
+    final = np.int64(0)
+    for run in range(len(starts)):
+        final = max(final, starts[run])
+    for i in range(final + 1):  # only for the actuators
+        if i > 0:
+            for j in range(NY):
+                y[j] = 0.0
+            last = advance_at_rest(inputs, i, delay, last, max_step, laws, plant)
+        for run in range(len(starts)):
+            if starts[run] == i:
+                copy_vector(memory, saved[run])
+                rows[run] = last
     for run in range(len(starts)):
         copy_vector(states[run], y)
-        copy_vector(saved[starts[run]], memory)
-        last = rows[starts[run]]
+        copy_vector(saved[run], memory)
+        last = rows[run]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
                 last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
