@@ -59,6 +59,9 @@ FEWEST_IN_PART = FEWEST_ROWS // 3
 # A pass over 6,000 rows in six degrees of freedom has 30 MB, free runs have 1 MB.
 KEPT_PASSES = 2
 KEPT_FREE_RUNS = 8
+KEPT_SMOOTHED = 4
+# numbers in all smoothed states of a recording that are kept, 32 MB
+LARGEST_SMOOTHED = 4_000_000
 KEPT_LIKELIHOODS = 512
 # errors with the gains of a pass: those of a recording whose group an effect does not concern
 KEPT_ERRORS = 2
@@ -238,6 +241,11 @@ class MappedRecording:
         return RecentResults(KEPT_LIKELIHOODS)
 
     @cached_property
+    def _smoothed(self) -> RecentResults[SmoothedStates]:
+        size = 2 * len(self.times) * self.program.module.NZ**2
+        return RecentResults(min(KEPT_SMOOTHED, LARGEST_SMOOTHED // size))
+
+    @cached_property
     def _free_runs(self) -> RecentResults[list[tuple[int, Array]]]:
         return RecentResults(KEPT_FREE_RUNS)
 
@@ -390,6 +398,10 @@ class MappedRecording:
             on: (effects,) 1 for the effects that act, else 0.
             levels: Levels of sensor noise and of the latent (unmodelled) force.
         """
+        key = _key_of(values, on, levels)
+        return self._smoothed.result(key, lambda: self._smooth(values, on, levels))
+
+    def _smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         n, channels = self.measured.shape
         nq, largest_size = self.program.module.NQ, self.program.module.NZ
         state = len(self.initial_state_prior.mean)
@@ -420,7 +432,7 @@ class MappedRecording:
             sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
             if (np.abs(rates - before) <= self.config.smoother_tolerance * sd).all():
                 break
-        return SmoothedStates(means, covariances, gains)
+        return SmoothedStates(_read_only(means), _read_only(covariances), _read_only(gains))
 
     def free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0
