@@ -249,14 +249,14 @@ def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
 
 
 @lean
-def add_process_noise(h: float, noise: ProcessNoise, P: Array, F: Array) -> None:
+def add_process_noise(h: float, noise: ProcessNoise, decay: float, P: Array, F: Array) -> None:
     """Add the process noise of a time h to the filter's covariance P.
 
-    It is that of latent forces, oscillators, instrument errors and the noise of measured forces.
-    The mean of the latter over h acts like a constant force, as in the transition matrix F.
+    It is that of latent forces, which decay by the factor `decay`, oscillators, instrument errors
+    and the noise of measured forces. The mean of the latter over h acts like a constant force, as
+    in the transition matrix F.
     """
     s, w, m = noise.oscillating_force, noise.instrument_drift, noise.m
-    decay = exp(-h / noise.force.time_constant)
     for j in range(NQ):
         P[NY + j, NY + j] += noise.force.variances[j] * (1.0 - decay * decay)
     for j in range(NQ):
@@ -298,15 +298,16 @@ def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselS
 
 @merged
 def predict_covariance(
-    h: float, noise: ProcessNoise, P: Array, F: Array, work: Array, n: int
+    h: float, noise: ProcessNoise, decay: float, P: Array, F: Array, work: Array, n: int
 ) -> None:
     """Predict the filter's covariance P over a time h, of the n entries of the state in use.
 
-    The transition matrix F is extended from motion and latent forces to the whole state.
+    The transition matrix F is extended from motion and latent forces, which decay by the factor
+    `decay`, to the whole state.
     """
     m = noise.m
     for a in range(NY, LASTING):
-        F[a, a] = exp(-h / noise.force.time_constant)
+        F[a, a] = decay
     if m > LASTING:
         add_oscillators(h, noise.oscillating_force, F)
     for j in range(m, n):
@@ -314,17 +315,20 @@ def predict_covariance(
             F[i, j] = F[j, i] = 0.0
         F[j, j] = exp(-h / noise.instrument_drift.time)
     propagate_covariance(F, P, work, n)
-    add_process_noise(h, noise, P, F)
+    add_process_noise(h, noise, decay, P, F)
 
 
 @lean
-def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
-    """Predict the mean of the filter's state over a time h, given the motion y at its end."""
+def predict_mean(h: float, noise: ProcessNoise, decay: float, y: Array, z: Array) -> None:
+    """Predict the mean of the filter's state over a time h, given the motion y at its end.
+
+    Latent forces decay by the factor `decay`.
+    """
     m = noise.m
     for a in range(NY):
         z[a] = y[a]
     for a in range(NY, LASTING):
-        z[a] *= exp(-h / noise.force.time_constant)
+        z[a] *= decay
     for a in range(m, noise.n):
         z[a] *= exp(-h / noise.instrument_drift.time)
     if m > LASTING:
@@ -548,6 +552,7 @@ def kalman_filter(
         copy_square_matrix(P, history.covariances[0], n)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
+        decay = exp(-h / force.time_constant)
         copy_vector(z, about)
         if i == 1:
             copy_vector(start.rates, about[NQ:NY])
@@ -563,10 +568,10 @@ def kalman_filter(
             propagate_deviation(F, z, about, y)
         if options.gains:
             if n == LASTING:  # the loops of the usual size are unrolled
-                predict_covariance(h, noise, P, F, work.B, LASTING)
+                predict_covariance(h, noise, decay, P, F, work.B, LASTING)
             else:
-                predict_covariance(h, noise, P, F, work.B, n)
-        predict_mean(h, noise, y, z)
+                predict_covariance(h, noise, decay, P, F, work.B, n)
+        predict_mean(h, noise, decay, y, z)
         if options.history:
             copy_vector(z, history.predicted[i])
             copy_square_matrix(F, history.transitions[i], n)
@@ -597,7 +602,7 @@ def smooth_row(
     multiply_matrices(F, covariances[i], cross, n)  # F P
     copy_square_matrix(cross, B, n)
     complete_propagation(F, B, ahead, n)
-    add_process_noise(h, noise, ahead, F)
+    add_process_noise(h, noise, exp(-h / noise.force.time_constant), ahead, F)
     # Positions and rates are driven by the force alone: this keeps the matrix invertible.
     for j in range(n):
         ahead[j, j] *= 1.0 + 1e-9
