@@ -5,8 +5,6 @@ addresses here, which are looked up once, so that a pass costs little more than 
 Two threads must not filter the same recording at the same time.
 """
 
-from typing import Any
-
 import numpy as np
 
 from boatsim.physics.kernel.records import (

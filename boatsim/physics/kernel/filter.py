@@ -92,8 +92,8 @@ INVERT = 10
 # ------------------------------------------------------------------------------------------------
 
 
-@merged
-def advance_to_row(
+@lean
+def predict_motion(
     inputs: Inputs,
     i: int,
     delay: float,
@@ -103,9 +103,10 @@ def advance_to_row(
     plant: VesselState,
     moves: bool,
 ) -> int:
-    """Advance the actuators and, if `moves` is true, the motion from row i - 1 to row i, in place.
+    """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
 
-    The motion of row i of a recording happened `delay` before its time. `row` is the last row of
+    The filter uses it for its prediction. Unless `moves` is true, only the actuators are advanced.
+    The motion of row i happened `delay` before its time. `row` is the last row of
     commands used so far; returns the one used last. No step extends beyond a change of an
     actuator's signal.
     """
@@ -130,41 +131,6 @@ def advance_to_row(
             step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row
-
-
-@lean
-def predict_motion(
-    inputs: Inputs,
-    i: int,
-    delay: float,
-    row: int,
-    max_step: float,
-    laws: LawArguments,
-    plant: VesselState,
-) -> int:
-    """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
-
-    The filter uses it for its prediction. The arguments are those of `advance_to_row`.
-    """
-    return advance_to_row(inputs, i, delay, row, max_step, laws, plant, True)
-
-
-@lean
-def advance_at_rest(
-    inputs: Inputs,
-    i: int,
-    delay: float,
-    row: int,
-    max_step: float,
-    laws: LawArguments,
-    plant: VesselState,
-) -> int:
-    """Advance the actuators from row i - 1 to row i of a recording, in place.
-
-    The vessel moves as well only where its effects remember the motion.
-    """
-    moves = HAS_ADVANCE_MOTION_MEMORY
-    return advance_to_row(inputs, i, delay, row, max_step, laws, plant, moves)
 
 
 @lean
@@ -363,14 +329,14 @@ def predict_motion_and_transition(
     if i == 1:
         steps[i] = max_step
     copy_vector(plant.memory, f.work.memory)
-    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant)
+    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant, True)
     rate = state_transition(times[i - 1] - f.delay, h, z, f.laws, plant, f.work)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
         set_plant_from_state(z, h, f.noise, plant)
         copy_vector(f.work.memory, plant.memory)
-        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant)
+        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant, True)
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -561,7 +527,7 @@ def kalman_filter(
             last = predict_motion_and_transition(f, i, last, about, options.max_step, out.steps)
             copy_square_matrix(F, out.transitions[i], LASTING)
         else:
-            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant)
+            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant, True)
             if options.gains or i == 1:
                 copy_square_matrix(out.transitions[i], F, LASTING)
         if i == 1:
@@ -667,14 +633,16 @@ def simulate_intervals(
     y, delay, last = np.zeros(NY), motion_latency(p, on), np.int64(0)
     laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
     saved, rows = np.zeros((len(starts), MEMORY)), np.zeros(len(starts), dtype=np.int64)
+    # Before the runs begin, the actuators alone are advanced, unless effects remember the motion.
+    moves = HAS_ADVANCE_MOTION_MEMORY
     final = np.int64(0)
     for run in range(len(starts)):
         final = max(final, starts[run])
-    for i in range(final + 1):  # only for the actuators
+    for i in range(final + 1):
         if i > 0:
             for j in range(NY):
                 y[j] = 0.0
-            last = advance_at_rest(inputs, i, delay, last, max_step, laws, plant)
+            last = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
         for run in range(len(starts)):
             if starts[run] == i:
                 copy_vector(memory, saved[run])
@@ -685,7 +653,7 @@ def simulate_intervals(
         last = rows[run]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
+                last = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
             for code in range(NY):
                 t = times[i] - times[0]
                 out[run, i, code] = predicted_measurement(y, t, code, p, on)
