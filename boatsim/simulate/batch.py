@@ -49,7 +49,7 @@ MOST_THREADS = 4096  # a computer has fewer
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 86400.0  # [s]
 FAR = 10.0  # widths of a channel's range outside it from which a command is an error
 TURN = 256  # vessels that a thread steps at a time, so that their data stay in its core's cache
-# Turns of each thread over steps alone, which need the data of a vessel once: few, because each turn
+# Turns of each thread over steps alone, which need the data of a vessel once: few, because a turn
 # takes some microseconds of Python, and several, so that threads end at about the same time.
 TURNS = 8
 
