@@ -72,16 +72,10 @@ def _check_command(vessel: Vessel, name: str, values: ArrayLike) -> None:
         return
     given = float_array(f"{vessel.name}: {name}", values)
     low, high = limits[name]
-    lowest, highest = _possible_range(low, high)
-    far = (given < lowest) | (given > highest)
+    reach = FAR * (high - low)
+    far = (given < low - reach) | (given > high + reach)
     if far.any():
         raise BadInput(f"{vessel.name}: {name} = {given[far][0]:g}; allowed {low:g} to {high:g}")
-
-
-def _possible_range(low: float, high: float) -> tuple[float, float]:
-    """Commands outside which a command to a channel cannot be in its unit."""
-    reach = FAR * (high - low)
-    return low - reach, high + reach
 
 
 def checked_vessels(vessels: object) -> list[Vessel]:
@@ -535,20 +529,16 @@ class Batch:
                 f"commands of shape {given.shape}; "
                 f"allowed are {width} a boat: {', '.join(vessel.commands)}"
             )
-        lowest, highest = self._possible_commands[:, : given.shape[-1]]
-        if ((given < lowest) | (given > highest)).any():
-            for name, column in zip(vessel.inputs, np.moveaxis(given, -1, 0), strict=False):
-                _check_command(vessel, name, column)
         rows = np.empty((len(boats), len(vessel.inputs)))
         rows[:, : given.shape[-1]] = given
         rows[:, given.shape[-1] :] = self._commands[boats, given.shape[-1] :]
+        if np.isfinite(rows).all():
+            clipped = clip_to_channel_ranges(vessel, rows)
+            if np.array_equal(clipped, rows):
+                return clipped
+        for name, column in zip(vessel.inputs, np.moveaxis(given, -1, 0), strict=False):
+            _check_command(vessel, name, column)
         return clip_to_channel_ranges(vessel, rows)
-
-    @cached_property
-    def _possible_commands(self) -> Array:
-        """Lowest and highest possible value (2, C) of each input."""
-        ranges = [_possible_range(*limits) for limits in self.vessels[0].limits().values()]
-        return np.array(ranges, dtype=float).reshape(-1, 2).T
 
     @cached_property
     def _parameters(self) -> dict[str, tuple[int, Param]]:
