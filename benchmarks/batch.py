@@ -3,6 +3,8 @@
 It takes about a minute and prints Runge-Kutta boat-steps per second on all cores, medians of three
 rounds. The vessel is the joystick boat with its own and four more effects: in open loop with constant
 commands and with commands that all change every control period, and in a closed loop with sensor noise.
+Where commands change, the share of the steps is printed that are divided because the signal of an
+actuator bends.
 """
 
 import argparse
@@ -17,6 +19,8 @@ from rich.table import Table
 
 from benchmarks.engine import COMMANDS, EXTRA, OPEN, STEP, Figure
 from boatsim.physics import vessel
+from boatsim.physics.kernel.run import ENOUGH, SHORTEST
+from boatsim.physics.signals import Array
 from boatsim.simulate import scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.fleet import Fleet
@@ -24,6 +28,8 @@ from boatsim.simulate.fleet import Fleet
 ROUNDS = 3
 PERIOD = 4  # [steps]
 PERIODS = 25  # control periods of a round in open loop
+SPEED = "M boat-steps/s"
+SAMPLE = 40  # boats of which divided steps are counted
 SECONDS = 60.0  # of the closed loop
 CASE = "joystick_boat/sway_1_wind"
 
@@ -38,32 +44,54 @@ def steps_per_second(steps: int, advance: Callable[[], object]) -> float:
     return median(found)
 
 
+def divided_share(jumps: Array) -> float:
+    """Return the share of steps that are divided under given commands (periods, boats, C)."""
+    batch = Batch(vessel.load_vessel("joystick_boat", extra=EXTRA), jumps.shape[1], STEP)
+    batch.reset(commands=batch.program.command_array(COMMANDS))
+    fleet, divided, steps = batch.fleet, 0, 0
+    for commands in jumps:
+        batch.advance(commands, 0)
+        for _ in range(PERIOD):
+            for b in range(len(batch)):
+                part = batch.code.substep_length(
+                    fleet.commands[b], fleet.memory[b], STEP, SHORTEST, fleet.p[b], fleet.on
+                )
+                divided += part < STEP - ENOUGH
+                steps += 1
+            batch.advance()
+    return divided / steps
+
+
 def open_loop(boats: int) -> list[Figure]:
     """Measure constant commands, and commands of all boats that jump every period."""
     batch = Batch(vessel.load_vessel("joystick_boat", extra=EXTRA), boats, STEP)
     row = batch.program.command_array(COMMANDS)
-    jumps = (
-        np.random.default_rng(0).uniform(-1.0, 1.0, (PERIODS, boats, len(row))) * np.abs(row) * 0.2
-    )
-
-    def changing() -> None:
-        for jump in jumps:
-            batch.advance(row + jump, PERIOD)
-
+    low, high = np.array(list(batch.vessels[0].limits().values())).T
+    shape = (PERIODS, boats, len(row))
+    rng = np.random.default_rng(0)
+    jumping = {
+        "all commands jump every 80 ms": row + rng.uniform(-0.2, 0.2, shape) * np.abs(row),
+        "all jump anywhere in their ranges": rng.uniform(low, high, shape),
+    }
     batch.reset(commands=row)
     batch.advance(steps=PERIOD)  # compiles
     steps = boats * PERIODS * PERIOD
     held = steps_per_second(steps, lambda: batch.advance(row, PERIODS * PERIOD))
-    return [
-        Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, "M boat-steps/s", 8.0),
-        Figure(
-            "open loop, all commands jump every 80 ms",
-            steps_per_second(steps, changing) / 1e6,
-            "M boat-steps/s",
-            0.0,
-        ),
-        Figure("memory of a boat", batch.bytes_per_boat, "bytes", 0.0),
-    ]
+    found = [Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, SPEED, 8.0)]
+    for name, rows in jumping.items():
+
+        def changing(rows: Array = rows) -> None:
+            for commands in rows:
+                batch.advance(commands, PERIOD)
+
+        batch.reset(commands=row)
+        speed = steps_per_second(steps, changing)
+        share = 100.0 * divided_share(rows[:, :SAMPLE])
+        found += [
+            Figure(f"open loop, {name}", speed / 1e6, SPEED, 0.0),
+            Figure("  share of divided steps", share, "%", 0.0),
+        ]
+    return [*found, Figure("memory of a boat", batch.bytes_per_boat, "bytes", 0.0)]
 
 
 def closed_loop(boats: int) -> list[Figure]:
@@ -79,9 +107,7 @@ def closed_loop(boats: int) -> list[Figure]:
         steps = boats * round(SECONDS / STEP)
         goal = (3.0, 15.0) if use == "l1_joystick" else (0.0, float("inf"))
         found += [
-            Figure(
-                f"{use} compiled, {boats:,} boats", steps / took / 1e6, "M boat-steps/s", goal[0]
-            ),
+            Figure(f"{use} compiled, {boats:,} boats", steps / took / 1e6, SPEED, goal[0]),
             Figure(f"{use} compiled, {SECONDS:g} s of them", took, "s", goal[1], at_least=False),
         ]
     return found

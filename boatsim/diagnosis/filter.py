@@ -42,11 +42,11 @@ from boatsim.physics.kernel.records import (
     FilterHistory,
     InitialState,
     Inputs,
-    LatentForce,
     PassArrays,
     PassOptions,
     VesselNumbers,
 )
+from boatsim.physics.native.calls import PackedArgument
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
 from boatsim.physics.signals import AXES, NOISE, Array, Signal, motion_signals
@@ -59,6 +59,9 @@ FEWEST_IN_PART = FEWEST_ROWS // 3
 # A pass over 6,000 rows in six degrees of freedom has 30 MB, free runs have 1 MB.
 KEPT_PASSES = 2
 KEPT_FREE_RUNS = 8
+KEPT_SMOOTHED = 4
+# numbers in all smoothed states of a recording that are kept, 32 MB
+LARGEST_SMOOTHED = 4_000_000
 KEPT_LIKELIHOODS = 512
 # errors with the gains of a pass: those of a recording whose group an effect does not concern
 KEPT_ERRORS = 2
@@ -83,6 +86,13 @@ class NoiseLevels:
     # addition to the noise that its samples show [N^2 s, N^2 m^2 s]; empty: no force is measured
     white: Array = field(default_factory=lambda: np.zeros(0))
 
+    @cached_property
+    def key(self) -> bytes:
+        """All numbers, as a key for results that depend on them."""
+        numbers = repr((self.time_constant, sorted(self.sensors.items()))).encode()
+        arrays = (self.force, self.initial_force, self.white)
+        return b"".join([numbers, *(array.tobytes() for array in arrays)])
+
     def with_other_correlation_time(self, seconds: float) -> "NoiseLevels":
         """Return noise levels with another correlation time of the latent (unmodelled) force.
 
@@ -93,6 +103,13 @@ class NoiseLevels:
         """
         force = self.force * np.sqrt(self.time_constant / seconds)
         return replace(self, force=force, time_constant=seconds)
+
+
+class ReusedArrays(NamedTuple):
+    """Arrays of a pass of the filter, as arguments of further passes that use them again."""
+
+    for_errors: PackedArgument  # transitions, steps, gains and scale
+    for_likelihood: PackedArgument  # transitions and steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +128,11 @@ class FilterPass:
     transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
     steps: Array  # (N,) integration steps [s]
     integrations: float  # number of integration steps between the rows
+
+    @cached_property
+    def packed(self) -> dict[FilterArguments, ReusedArrays]:
+        """Arrays of this pass as arguments of the compiled filter of a recording."""
+        return {}
 
     @cached_property
     def whitened_errors(self) -> RecentResults[Array]:
@@ -219,6 +241,11 @@ class MappedRecording:
         return RecentResults(KEPT_LIKELIHOODS)
 
     @cached_property
+    def _smoothed(self) -> RecentResults[SmoothedStates]:
+        size = 2 * len(self.times) * self.program.module.NZ**2
+        return RecentResults(min(KEPT_SMOOTHED, LARGEST_SMOOTHED // size))
+
+    @cached_property
     def _free_runs(self) -> RecentResults[list[tuple[int, Array]]]:
         return RecentResults(KEPT_FREE_RUNS)
 
@@ -285,7 +312,8 @@ class MappedRecording:
             transitions = _writable(about.transitions)
             steps = _writable(about.steps)
         arrays = PassArrays(transitions, steps, gains, scale, whitened)
-        found = self._run(values, on, levels, arrays, fresh=about is None)
+        packed = self._filter_arguments.pack_arrays(arrays)
+        found = self._run(values, on, levels, packed, fresh=about is None)
         if about is None:
             integrations = integration_count(self.times, steps)
         else:
@@ -310,7 +338,10 @@ class MappedRecording:
         It costs less than a complete pass by `filter`, which takes the same arguments.
         """
         if about is not None:
-            return self._run_filter(values, on, levels, about).log_likelihood
+            arrays = self._reused_arrays(about).for_likelihood
+            found = self._run(values, on, levels, arrays, fresh=False)
+            self._count_pass(about.integrations, COVARIANCE)
+            return found
         key = _key_of(values, on, levels)
         return self._likelihoods.result(key, lambda: self.filter(values, on, levels).log_likelihood)
 
@@ -335,17 +366,22 @@ class MappedRecording:
     def _whitened_errors(
         self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass
     ) -> Array:
-        whitened = np.zeros(self.measured.shape)
-        arrays = PassArrays(
-            _writable(about.transitions),
-            _writable(about.steps),
-            _writable(about.gains),
-            _writable(about.scale),
-            whitened,
-        )
-        self._run(values, on, levels, arrays, full=False)
+        own = self._filter_arguments
+        self._run(values, on, levels, self._reused_arrays(about).for_errors, full=False)
         self._count_pass(about.integrations, 0.0)
-        return _read_only(whitened.ravel())
+        return _read_only(own.whitened.flatten())
+
+    def _reused_arrays(self, about: FilterPass) -> ReusedArrays:
+        """Return the arrays of a pass as arguments of passes that use them again."""
+        own = self._filter_arguments
+        if own not in about.packed:
+            transitions, steps = _writable(about.transitions), _writable(about.steps)
+            gains, scale = _writable(about.gains), _writable(about.scale)
+            held = PassArrays(transitions, steps, gains, scale, own.whitened)
+            about.packed[own] = ReusedArrays(
+                own.pack_arrays(held), own.pack_arrays_for_likelihood(transitions, steps)
+            )
+        return about.packed[own]
 
     def _count_pass(self, integrations: float, matrices: float) -> None:
         """Count the work of a pass with given integration steps and work on matrices."""
@@ -362,36 +398,41 @@ class MappedRecording:
             on: (effects,) 1 for the effects that act, else 0.
             levels: Levels of sensor noise and of the latent (unmodelled) force.
         """
+        key = _key_of(values, on, levels)
+        return self._smoothed.result(key, lambda: self._smooth(values, on, levels))
+
+    def _smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         n, channels = self.measured.shape
-        size, state, nq = (
-            self.program.module.NZ,
-            len(self.initial_state_prior.mean),
-            self.program.module.NQ,
-        )
+        nq, largest_size = self.program.module.NQ, self.program.module.NZ
+        state = len(self.initial_state_prior.mean)
+        size = largest_size if self._has_further_states(on) else state
         arrays = PassArrays(
             np.zeros((n, state, state)),
             np.full(n, self.largest_step),
-            np.zeros((n, channels, size)),
+            np.zeros((n, channels, largest_size)),
             np.zeros((n, channels)),
             np.zeros((n, channels)),
         )
         means, covariances = np.zeros((n, size)), np.zeros((n, size, size))
         transitions, predicted = np.zeros((n, size, size)), np.zeros((n, size))
         gains, rates = np.zeros_like(transitions), self.initial_state_prior.rates
-        force, _ = self.latent_force_rms(values, on, levels)
+        own = self._filter_arguments
+        packed = own.pack_arrays(arrays)
+        keep = FilterHistory(means, covariances, transitions, predicted)
+        history = own.pack_history(keep)
         for _ in range(self.config.smoother_passes):
-            keep = FilterHistory(means, covariances, transitions, predicted)
-            self._run(values, on, levels, arrays, rates=rates, keep=keep)
+            start = own.pack_start(rates)
+            self._run(values, on, levels, packed, start=start, history=history)
             integrations = integration_count(self.times, arrays.steps)
             self._count_pass(integrations, COVARIANCE + DERIVATIVES + SMOOTHER)
             self.program.estimation_functions.smooth_states(
-                keep, gains, self.times, self._latent_force(force, levels), values, on
+                keep, gains, self.times, own.force, values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
             sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
             if (np.abs(rates - before) <= self.config.smoother_tolerance * sd).all():
                 break
-        return SmoothedStates(means, covariances, gains)
+        return SmoothedStates(_read_only(means), _read_only(covariances), _read_only(gains))
 
     def free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0
@@ -482,6 +523,13 @@ class MappedRecording:
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         return FreeRunStarts(np.array(starts), np.array(ends), states, tuple(drifts))
 
+    def _has_further_states(self, on: Array) -> bool:
+        """Whether an effect acts that adds entries to the filter's state."""
+        for effect, acts in zip(self.program.effects, on, strict=True):
+            if acts and isinstance(effect, RandomForce | DriftingMeasurement):
+                return True
+        return False
+
     def _oscillates(self, values: Array, on: Array) -> bool:
         """Whether the filter's state contains an oscillating force."""
         for effect, acts in zip(self.program.effects, on, strict=True):
@@ -521,29 +569,28 @@ class MappedRecording:
         values: Array,
         on: Array,
         levels: NoiseLevels,
-        arrays: PassArrays,
+        arrays: PackedArgument,
         *,
         full: bool = True,
         fresh: bool = True,
-        rates: Array | None = None,
-        keep: FilterHistory | None = None,
+        start: PackedArgument | None = None,
+        history: PackedArgument | None = None,
     ) -> float:
-        """Run the compiled filter, which fills or uses `arrays`; return the log likelihood."""
+        """Run the compiled filter, which fills or uses `arrays`; return the log likelihood.
+
+        Without new gains (`full`), the levels do not matter except the correlation time.
+        """
         own = self._filter_arguments
-        sds = [levels.sensors[f] * self.noise_scale[f] for f in self.families]
-        force, initial_force = self.latent_force_rms(values, on, levels)
-        own.write_variances(np.array(sds), initial_force)
-        found = self.program.estimation_functions.kalman_filter(
-            own.inputs,
-            own.measurements,
-            self._vessel_arguments.numbers,
-            self._latent_force(force, levels),
-            own.start if rates is None else own.start_about(rates),
-            PassOptions(self.largest_step, full, fresh, keep is not None),
-            arrays,
-            keep or own.no_history,
-        )
-        return float(found)
+        if full:
+            sds = [levels.sensors[f] * self.noise_scale[f] for f in self.families]
+            force, initial_force = self.latent_force_rms(values, on, levels)
+            own.write_variances(np.array(sds), initial_force)
+            own.write_force(force, levels.time_constant, self._white_noise(levels))
+        else:
+            self._vessel_arguments.write(values, on)
+            own.write_time_constant(levels.time_constant)
+        options = PassOptions(self.largest_step, full, fresh, history is not None)
+        return own.run(options, arrays, start, history)
 
     @cached_property
     def _vessel_arguments(self) -> VesselArguments:
@@ -557,6 +604,7 @@ class MappedRecording:
             self.measured,
             self.codes,
             self.initial_state_prior,
+            self._vessel_arguments.numbers,
         )
 
     @cached_property
@@ -566,20 +614,20 @@ class MappedRecording:
         inside = changes[(changes > self.times[0]) & (changes < self.times[-1])]
         return len(np.setdiff1d(inside, self.times))
 
-    def _latent_force(self, rms: Array, levels: NoiseLevels) -> LatentForce:
+    def _white_noise(self, levels: NoiseLevels) -> Array:
+        """Spectral densities (NQ,) of the noise of measured forces."""
         white = np.zeros(self.program.module.NQ)
         if len(self.input_noise):
             white = white + self.input_noise
         if len(levels.white):
             white = white + levels.white
-        return LatentForce(rms**2, levels.time_constant, white)
+        return white
 
 
 def _key_of(values: Array, on: Array, levels: NoiseLevels, *times: float) -> bytes:
     """All that a result for a recording depends on, as one key."""
-    numbers = (times, levels.time_constant, sorted(levels.sensors.items()))
-    arrays = (values, np.asarray(on), levels.force, levels.initial_force, levels.white)
-    return b"".join([repr(numbers).encode(), *(array.tobytes() for array in arrays)])
+    key = values.tobytes() + on.tobytes() + levels.key
+    return key + repr(times).encode() if times else key
 
 
 def _read_only(array: Array) -> Array:

@@ -93,6 +93,10 @@ def set_up_estimation_problem(
     track = small_track_fact([*loaded.fitted, *loaded.held_out], vessel, config.load)
     libraries, programs = dict[Path | None, CandidateLibrary](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
+        equal = _file_of_equal_vessel(own, loaded.vessels, programs)
+        if equal:
+            libraries[path], programs[path] = libraries[equal], programs[equal]
+            continue
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
         known_facts = {**facts, **track}
         libraries[path] = candidate_library(known, loaded.library, known_facts, columns, config)
@@ -111,6 +115,16 @@ def set_up_estimation_problem(
     names = candidate_names_except(library, loaded.without)
     names = (*names, *problem.candidates_in_single_groups(names))
     return Question(problem, tuple(held_out), mapper, library, names)
+
+
+def _file_of_equal_vessel(
+    vessel: Vessel, vessels: Mapping[Path | None, Vessel], known: Mapping[Path | None, Program]
+) -> Path | None:
+    """File of a recording whose vessel is the same and has a program already; None if none has."""
+    for path in known:
+        if vessels[path] == vessel:
+            return path
+    return None
 
 
 def _uncertainty(

@@ -229,7 +229,23 @@ class CompiledProgram(Protocol):
     ) -> None:
         """Smooth the filtered means and covariances of a recording in place.
 
-        It is a fixed-interval smoother and fills its gains (N, NZ, NZ).
+        It is a fixed-interval smoother and fills its gains (N, n, n).
+        """
+
+    def mean_actuator_signals(
+        self, first: Array, commands: Array, steps: Array, p: Array, on: Array, out: Array
+    ) -> None:
+        """Fill out (N, HELD) with the mean actuator signals along the rows of a recording.
+
+        They begin settled to the commands `first`. Row i of the commands acts for steps[i] [s].
+        """
+
+    def total_body_forces(
+        self, states: Array, held: Array, p: Array, on: Array, out: Array
+    ) -> None:
+        """Fill out (N, NQ) with the body forces of all effects at the states (N, 2 NQ).
+
+        The actuators have the signals `held` (N, HELD).
         """
 
     def simulate_intervals(

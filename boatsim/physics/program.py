@@ -73,6 +73,10 @@ class Program:
 
     def values(self) -> Array:
         """Parameters and then tables (P,) of all effects of the program, in SI units."""
+        return self._values.copy()
+
+    @cached_property
+    def _values(self) -> Array:
         parameters = [v for e in self.effects for v in e.values()]
         tables = [e.table() for e in self.effects]
         return np.concatenate([parameters, *tables]).astype(float)

@@ -299,7 +299,7 @@ def first_order_lag(
     """Return an actuator signal after a first-order lag, exact if the input is a parabola.
 
     The state of the lag is memory[at]. T y' = x - y with x = b + c s + d s^2, s in steps, has the
-    solution f + g s + d s^2 plus a decaying exponential.
+    solution f + g s + d s^2 plus a decaying exponential. A constant x leaves only f.
 
     Args:
         x: Input signal over the step.
@@ -309,10 +309,14 @@ def first_order_lag(
         dt: Length of the step [s].
     """
     y, quick = memory[at], dt / time_constant
+    decay = np.exp(-quick)
+    if x.middle == x.begin and x.end == x.begin:
+        rest = y - x.begin
+        memory[at] = x.begin + rest * decay
+        return segment_with_mean(y, x.begin + rest * (1.0 - decay) / quick, memory[at])
     c, d = 4.0 * x.middle - 3.0 * x.begin - x.end, 2.0 * (x.begin + x.end) - 4.0 * x.middle
     g = c - 2.0 * d / quick
     f = x.begin - g / quick
-    decay = np.exp(-quick)
     memory[at] = f + g + d + (y - f) * decay
     return segment_with_mean(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
 

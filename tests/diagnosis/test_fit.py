@@ -151,3 +151,37 @@ def test_the_order_of_independent_calls_changes_no_number() -> None:
         np.testing.assert_array_equal(one, other)
     with pytest.raises(ValueError, match="read-only"):
         laid.filter(laid.values, on, levels).whitened[0] = 1.0
+
+
+def test_kept_results_are_those_of_the_given_noise_levels_and_values() -> None:
+    """Results of a recording are kept: other arguments, in any order of calls, give other ones."""
+    boat = vessel.load_vessel("jet_ski")
+    run = sailed(Craft(), np.full(60, 4.0), np.repeat([0.1, -0.1], 30), 10.0)
+    program = program_with_candidates(boat, ["cubic_damping"])
+    on, levels = program.effect_switches(), prior_noise_levels(boat, [run])
+    sensors = {name: 2.0 * sd for name, sd in levels.sensors.items()}
+    changed = [
+        levels,
+        replace(levels, force=2.0 * levels.force),
+        replace(levels, time_constant=2.0 * levels.time_constant),
+        replace(levels, sensors=sensors),
+        replace(levels, initial_force=np.full(len(levels.force), 1e3)),
+    ]
+    laid = map_recording(run, program)
+    stronger = laid.values.copy()
+    stronger[program.parameter_index("surge_drag", "linear")] *= 1.5
+    cases = [(laid.values, one) for one in changed] + [(stronger, levels)]
+    together = []
+    for values, one in cases:
+        about = laid.filter(values, on, one)
+        errors = laid.whitened_errors(laid.values, on, one, about)
+        again = laid.log_likelihood(stronger, on, one, about)
+        together.append((about.log_likelihood, errors, again, laid.smooth(values, on, one).means))
+    for found, (values, one) in reversed(list(zip(together, cases, strict=True))):
+        alone = map_recording(run, program)
+        about = alone.filter(values, on, one)
+        assert np.array_equal(found[3], alone.smooth(values, on, one).means)
+        assert np.array_equal(found[1], alone.whitened_errors(laid.values, on, one, about))
+        assert found[0] == about.log_likelihood
+        assert found[2] == alone.log_likelihood(stronger, on, one, about)
+    assert len({found[0] for found in together}) == len(cases)

@@ -135,7 +135,7 @@ def _commanded(mapped: MappedRecording) -> Array:
     on = program.effect_switches()
     commands = program.command_array(neutral)
     program.estimation_functions.settle_actuators(commands, memory, mapped.values, on, act)
-    idle = body_forces(mapped, rest[:1], [act], mapped.values)
+    idle = body_forces(mapped, rest[:1], act[None], mapped.values)
     return body_forces(mapped, rest, actuator_states(mapped), mapped.values) - idle
 
 

@@ -1,6 +1,6 @@
 """Forces of the vessel along a recording: of its actuators and of each of its coefficients."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,7 +8,6 @@ from boatsim.diagnosis.command_range import manoeuvre_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
-from boatsim.physics.native.calls import partial_call
 
 
 def actuator_states(
@@ -30,27 +29,18 @@ def actuator_states(
     if values is None:
         values = mapped.values
     on = program.effect_switches(effects)
-    act = np.zeros(program.actuator_signal_size)
-    memory = np.zeros(program.memory_size)
-    program.estimation_functions.settle_actuators(mapped.command_values[0], memory, values, on, act)
     steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
-    command = np.zeros(mapped.commands.shape[1])
-    advance = partial_call(
-        program.estimation_functions, "advance_actuators", command, memory, ..., values, on, act
+    held = np.empty((len(steps), program.actuator_signal_size // 3))
+    program.estimation_functions.mean_actuator_signals(
+        mapped.command_values[0], np.ascontiguousarray(mapped.commands), steps, values, on, held
     )
-    parts = np.empty((len(mapped.times), 3, len(act) // 3))
-    for row, step in enumerate(steps.tolist()):
-        command[:] = mapped.commands[row]
-        advance(step)
-        parts[row] = act.reshape(3, -1)
-    begin, middle, end = np.moveaxis(parts, 1, 0)
-    return np.asarray((begin + 4.0 * middle + end) / 6.0)
+    return held
 
 
 def body_forces(
     mapped: MappedRecording,
-    states: Iterable[Array],
-    held: Iterable[Array],
+    states: Array,
+    held: Array,
     values: Array,
     effects: Sequence[str] = (),
 ) -> Array:
@@ -68,15 +58,12 @@ def body_forces(
     """
     program = mapped.program
     on = program.effect_switches(effects)
-    y, act = np.zeros(2 * program.module.NQ), np.zeros(program.actuator_signal_size)
-    force = partial_call(
-        program.estimation_functions, "total_body_force", 0.0, y, act, np.int64(0), values, on
+    states = np.ascontiguousarray(states, dtype=float)
+    forces = np.empty((len(states), program.module.NQ))
+    program.estimation_functions.total_body_forces(
+        states, np.ascontiguousarray(held, dtype=float), values, on, forces
     )
-    rows = []
-    for state, actuators in zip(states, held, strict=True):
-        y[:], act[: len(actuators)] = state, actuators
-        rows.append(force())
-    return np.array(rows)
+    return forces
 
 
 def full_thrust(mapped: MappedRecording) -> float:
@@ -104,7 +91,7 @@ def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) ->
         program.command_array(commands), memory, values, on, act
     )
     rest = np.zeros((1, 2 * program.module.NQ))
-    return float(body_forces(mapped, rest, [act], values)[0][0])
+    return float(body_forces(mapped, rest, act[None], values)[0][0])
 
 
 def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, states: Array) -> Array:

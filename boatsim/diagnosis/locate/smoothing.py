@@ -219,20 +219,18 @@ def _weighted(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
     n = len(force.times)
     weights = _times_precision(shapes, force) / (force.rms**2)[:, None]
     # P_i w_i + G_i (the same sum of all later rows); the weights of motions are zero
-    from_force = np.ascontiguousarray(force.covariances[:, :, part])
-    smoothed = np.empty_like(weights)
-    ahead = from_force[-1] @ weights[-1]
-    smoothed[-1] = ahead[part]
+    sums = np.ascontiguousarray(force.covariances[:, :, part]) @ weights
     for i in range(n - 2, -1, -1):
-        ahead = from_force[i] @ weights[i] + gains[i] @ ahead
-        smoothed[i] = ahead[part]
+        sums[i] += gains[i] @ sums[i + 1]
+    smoothed = sums[:, part].copy()
     # plus P_i G'_i-1 (w_i-1 + the same sum of all earlier rows)
-    to_force = np.ascontiguousarray(force.covariances[:, part])
-    before = np.zeros_like(ahead)
+    earlier = np.zeros_like(sums)
+    before = np.zeros_like(sums[0])
     for i in range(1, n):
         before[part] += weights[i - 1]
         before = gains[i - 1].T @ before
-        smoothed[i] += to_force[i] @ before
+        earlier[i] = before
+    smoothed += np.ascontiguousarray(force.covariances[:, part]) @ earlier
     return weights, shapes - smoothed
 
 

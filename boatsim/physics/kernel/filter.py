@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.compiling import compiled, lean, merged
 from boatsim.physics.kernel.correction import update_by_measurement
 from boatsim.physics.kernel.matrices import (
     cholesky_solve,
+    complete_propagation,
     copy_square_matrix,
     copy_vector,
     matrix_exponential,
@@ -35,6 +36,7 @@ from boatsim.physics.kernel.records import (
     PassArrays,
     PassOptions,
     ProcessNoise,
+    SmootherWorkspace,
     StateEstimate,
     VesselNumbers,
     VesselState,
@@ -99,12 +101,14 @@ def predict_motion(
     max_step: float,
     laws: LawArguments,
     plant: VesselState,
+    moves: bool,
 ) -> int:
     """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
 
-    The filter uses it for its prediction. The motion of row i happened `delay` before its time.
-    `row` is the last row of commands used so far; returns the one used last. No step extends beyond
-    a change of an actuator's signal.
+    The filter uses it for its prediction. Unless `moves` is true, only the actuators are advanced.
+    The motion of row i happened `delay` before its time. `row` is the last row of
+    commands used so far; returns the one used last. No step extends beyond a change of an
+    actuator's signal.
     """
     times, given, commands = inputs
     p, on, k = laws
@@ -123,7 +127,8 @@ def predict_motion(
         advance_actuators(commands[row], memory, dt, p, on, act)
         if HAS_ADVANCE_MOTION_MEMORY:
             advance_memory_of_motion(begin + done, y, dt, memory, act, p, on)
-        step_in_place(begin + done, y, dt, act, p, on, k, force)
+        if moves:
+            step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row
 
@@ -210,14 +215,14 @@ def instrument_drift_rms(w: InstrumentDrift, j: int) -> float:
 
 
 @lean
-def add_process_noise(h: float, noise: ProcessNoise, P: Array, F: Array) -> None:
+def add_process_noise(h: float, noise: ProcessNoise, decay: float, P: Array, F: Array) -> None:
     """Add the process noise of a time h to the filter's covariance P.
 
-    It is that of latent forces, oscillators, instrument errors and the noise of measured forces.
-    The mean of the latter over h acts like a constant force, as in the transition matrix F.
+    It is that of latent forces, which decay by the factor `decay`, oscillators, instrument errors
+    and the noise of measured forces. The mean of the latter over h acts like a constant force, as
+    in the transition matrix F.
     """
     s, w, m = noise.oscillating_force, noise.instrument_drift, noise.m
-    decay = exp(-h / noise.force.time_constant)
     for j in range(NQ):
         P[NY + j, NY + j] += noise.force.variances[j] * (1.0 - decay * decay)
     for j in range(NQ):
@@ -257,36 +262,39 @@ def set_plant_from_state(z: Array, h: float, noise: ProcessNoise, plant: VesselS
             force[a] += mean1 * z[LASTING + 2 * a] + mean2 * z[LASTING + 2 * a + 1]
 
 
-@lean
-def predict_covariance(h: float, noise: ProcessNoise, P: Array, F: Array, work: Array) -> None:
-    """Predict the filter's covariance P over a time h.
+@merged
+def predict_covariance(
+    h: float, noise: ProcessNoise, decay: float, P: Array, F: Array, work: Array, n: int
+) -> None:
+    """Predict the filter's covariance P over a time h, of the n entries of the state in use.
 
-    The transition matrix F is extended from motion and latent forces to the whole state.
+    The transition matrix F is extended from motion and latent forces, which decay by the factor
+    `decay`, to the whole state.
     """
-    m, n = noise.m, noise.n
+    m = noise.m
     for a in range(NY, LASTING):
-        F[a, a] = exp(-h / noise.force.time_constant)
+        F[a, a] = decay
     if m > LASTING:
         add_oscillators(h, noise.oscillating_force, F)
     for j in range(m, n):
         for i in range(n):
             F[i, j] = F[j, i] = 0.0
         F[j, j] = exp(-h / noise.instrument_drift.time)
-    if n == LASTING:
-        propagate_covariance(F, P, work, LASTING)
-    else:
-        propagate_covariance(F, P, work, n)
-    add_process_noise(h, noise, P, F)
+    propagate_covariance(F, P, work, n)
+    add_process_noise(h, noise, decay, P, F)
 
 
 @lean
-def predict_mean(h: float, noise: ProcessNoise, y: Array, z: Array) -> None:
-    """Predict the mean of the filter's state over a time h, given the motion y at its end."""
+def predict_mean(h: float, noise: ProcessNoise, decay: float, y: Array, z: Array) -> None:
+    """Predict the mean of the filter's state over a time h, given the motion y at its end.
+
+    Latent forces decay by the factor `decay`.
+    """
     m = noise.m
     for a in range(NY):
         z[a] = y[a]
     for a in range(NY, LASTING):
-        z[a] *= exp(-h / noise.force.time_constant)
+        z[a] *= decay
     for a in range(m, noise.n):
         z[a] *= exp(-h / noise.instrument_drift.time)
     if m > LASTING:
@@ -321,14 +329,14 @@ def predict_motion_and_transition(
     if i == 1:
         steps[i] = max_step
     copy_vector(plant.memory, f.work.memory)
-    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant)
+    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant, True)
     rate = state_transition(times[i - 1] - f.delay, h, z, f.laws, plant, f.work)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
         set_plant_from_state(z, h, f.noise, plant)
         copy_vector(f.work.memory, plant.memory)
-        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant)
+        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant, True)
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -507,9 +515,10 @@ def kalman_filter(
     if options.history:
         copy_vector(z, history.means[0])
         copy_vector(z, history.predicted[0])
-        copy_square_matrix(P, history.covariances[0], NZ)
+        copy_square_matrix(P, history.covariances[0], n)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
+        decay = exp(-h / force.time_constant)
         copy_vector(z, about)
         if i == 1:
             copy_vector(start.rates, about[NQ:NY])
@@ -518,22 +527,64 @@ def kalman_filter(
             last = predict_motion_and_transition(f, i, last, about, options.max_step, out.steps)
             copy_square_matrix(F, out.transitions[i], LASTING)
         else:
-            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant)
+            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant, True)
             if options.gains or i == 1:
                 copy_square_matrix(out.transitions[i], F, LASTING)
         if i == 1:
             propagate_deviation(F, z, about, y)
         if options.gains:
-            predict_covariance(h, noise, P, F, work.B)
-        predict_mean(h, noise, y, z)
+            if n == LASTING:  # the loops of the usual size are unrolled
+                predict_covariance(h, noise, decay, P, F, work.B, LASTING)
+            else:
+                predict_covariance(h, noise, decay, P, F, work.B, n)
+        predict_mean(h, noise, decay, y, z)
         if options.history:
             copy_vector(z, history.predicted[i])
-            copy_square_matrix(F, history.transitions[i], NZ)
+            copy_square_matrix(F, history.transitions[i], n)
         likelihood += update_by_row(f, estimate, measured, i, options.gains, out)
         if options.history:
             copy_vector(z, history.means[i])
-            copy_square_matrix(P, history.covariances[i], NZ)
+            copy_square_matrix(P, history.covariances[i], n)
     return likelihood
+
+
+@merged
+def smooth_row(
+    i: int,
+    history: FilterHistory,
+    gains: Array,
+    h: float,
+    noise: ProcessNoise,
+    work: SmootherWorkspace,
+    n: int,
+) -> None:
+    """Smooth the mean and the covariance of row i, h before the next row, which is smooth already.
+
+    Fills the gains of the row. The n entries of the state that are in use are smoothed.
+    """
+    means, covariances, transitions, predicted = history
+    ahead, cross, G, B, off = work
+    F = transitions[i + 1]
+    multiply_matrices(F, covariances[i], cross, n)  # F P
+    copy_square_matrix(cross, B, n)
+    complete_propagation(F, B, ahead, n)
+    add_process_noise(h, noise, exp(-h / noise.force.time_constant), ahead, F)
+    # Positions and rates are driven by the force alone: this keeps the matrix invertible.
+    for j in range(n):
+        ahead[j, j] *= 1.0 + 1e-9
+        ahead[j, j] += 1e-18
+    copy_square_matrix(ahead, B, n)
+    cholesky_solve(B, cross, n)
+    for j in range(n):
+        off[j] = means[i + 1, j] - predicted[i + 1, j]
+        for k in range(n):
+            G[j, k] = gains[i, j, k] = cross[k, j]
+            ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
+    propagate_covariance(G, ahead, B, n)
+    for j in range(n):
+        for k in range(n):
+            means[i, j] += G[j, k] * off[k]
+            covariances[i, j, k] += ahead[j, k]
 
 
 @compiled
@@ -544,33 +595,19 @@ def smooth_states(
 
     Fills the smoother gains (N, NZ, NZ).
     """
-    means, covariances, transitions, predicted = history
     s, w = oscillating_force(p, on), instrument_drift(p, on)
     m, n = state_sizes(s, w)
     noise = ProcessNoise(force, s, w, m, n)
-    ahead, cross = np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
-    G, work, off = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros(NZ)
+    square = (NZ, NZ)
+    work = SmootherWorkspace(
+        np.zeros(square), np.zeros(square), np.zeros(square), np.zeros(square), np.zeros(NZ)
+    )
     for i in range(len(times) - 2, -1, -1):
-        multiply_matrices(transitions[i + 1], covariances[i], cross, n)  # F P
-        copy_square_matrix(covariances[i], ahead, n)
-        propagate_covariance(transitions[i + 1], ahead, work, n)
-        add_process_noise(times[i + 1] - times[i], noise, ahead, transitions[i + 1])
-        # Positions and rates are driven by the force alone: this keeps the matrix invertible.
-        for j in range(n):
-            ahead[j, j] *= 1.0 + 1e-9
-            ahead[j, j] += 1e-18
-        copy_square_matrix(ahead, work, n)
-        cholesky_solve(work, cross, n)
-        for j in range(n):
-            off[j] = means[i + 1, j] - predicted[i + 1, j]
-            for k in range(n):
-                G[j, k] = gains[i, j, k] = cross[k, j]
-                ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
-        propagate_covariance(G, ahead, work, n)
-        for j in range(n):
-            for k in range(n):
-                means[i, j] += G[j, k] * off[k]
-                covariances[i, j, k] += ahead[j, k]
+        h = times[i + 1] - times[i]
+        if n == LASTING:  # the loops of the usual size are unrolled
+            smooth_row(i, history, gains, h, noise, work, LASTING)
+        else:
+            smooth_row(i, history, gains, h, noise, work, n)
 
 
 @compiled
@@ -595,20 +632,28 @@ def simulate_intervals(
     settle_actuators(inputs.commands[0], memory, p, on, act)
     y, delay, last = np.zeros(NY), motion_latency(p, on), np.int64(0)
     laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
-    saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
-    for i in range(1, len(times)):  # only for the actuators
-        copy_vector(memory, saved[i - 1])
-        rows[i - 1] = last
-        for j in range(NY):
-            y[j] = 0.0
-        last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
+    saved, rows = np.zeros((len(starts), MEMORY)), np.zeros(len(starts), dtype=np.int64)
+    # Before the runs begin, the actuators alone are advanced, unless effects remember the motion.
+    moves = HAS_ADVANCE_MOTION_MEMORY
+    final = np.int64(0)
+    for run in range(len(starts)):
+        final = max(final, starts[run])
+    for i in range(final + 1):
+        if i > 0:
+            for j in range(NY):
+                y[j] = 0.0
+            last = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
+        for run in range(len(starts)):
+            if starts[run] == i:
+                copy_vector(memory, saved[run])
+                rows[run] = last
     for run in range(len(starts)):
         copy_vector(states[run], y)
-        copy_vector(saved[starts[run]], memory)
-        last = rows[starts[run]]
+        copy_vector(saved[run], memory)
+        last = rows[run]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                last = predict_motion(inputs, i, delay, last, max_step, laws, plant)
+                last = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
             for code in range(NY):
                 t = times[i] - times[0]
                 out[run, i, code] = predicted_measurement(y, t, code, p, on)

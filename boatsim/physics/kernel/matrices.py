@@ -55,13 +55,19 @@ def propagate_covariance(F: Array, P: Array, work: Array, n: int) -> None:
     The many zeros of F are skipped.
     """
     multiply_matrices(F, P, work, n)
+    complete_propagation(F, work, P, n)
+
+
+@merged
+def complete_propagation(F: Array, work: Array, out: Array, n: int) -> None:
+    """Compute the covariance out = F P F' from work = F P, which is transposed in place."""
     for i in range(n):
         for j in range(i):
             work[i, j], work[j, i] = work[j, i], work[i, j]
-    multiply_matrices(F, work, P, n)
+    multiply_matrices(F, work, out, n)
     for i in range(n):
         for j in range(i):
-            P[j, i] = P[i, j]
+            out[j, i] = out[i, j]
 
 
 @merged
@@ -91,25 +97,34 @@ def matrix_exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
         part *= 2.0
 
 
-@lean
+@merged
 def cholesky_solve(A: Array, B: Array, n: int) -> None:
     """Compute B = A^-1 B for a symmetric positive definite matrix A.
 
-    A is replaced by its Cholesky factor.
+    The upper triangle of A is replaced by its Cholesky factor. The inner loops run along rows,
+    whose entries lie side by side.
     """
     for j in range(n):
         for k in range(j):
+            x = A[k, j]
             for i in range(j, n):
-                A[i, j] -= A[i, k] * A[j, k]
+                A[j, i] -= A[k, i] * x
         root = sqrt(max(A[j, j], 1e-300))
         for i in range(j, n):
-            A[i, j] /= root
-    for c in range(n):
-        for i in range(n):
-            for k in range(i):
-                B[i, c] -= A[i, k] * B[k, c]
-            B[i, c] /= A[i, i]
-        for i in range(n - 1, -1, -1):
-            for k in range(i + 1, n):
-                B[i, c] -= A[k, i] * B[k, c]
-            B[i, c] /= A[i, i]
+            A[j, i] /= root
+    for i in range(n):
+        for k in range(i):
+            x = A[k, i]
+            for c in range(n):
+                B[i, c] -= x * B[k, c]
+        x = A[i, i]
+        for c in range(n):
+            B[i, c] /= x
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            x = A[i, k]
+            for c in range(n):
+                B[i, c] -= x * B[k, c]
+        x = A[i, i]
+        for c in range(n):
+            B[i, c] /= x

@@ -119,13 +119,14 @@ class PassArrays(NamedTuple):
 class FilterHistory(NamedTuple):
     """Filtered means, covariances and transition matrices of a recording, for the smoother.
 
-    The smoother overwrites the means and covariances.
+    The smoother overwrites the means and covariances. The arrays hold at least the n entries of the
+    state that are in use.
     """
 
-    means: Array  # (N, NZ)
-    covariances: Array  # (N, NZ, NZ)
-    transitions: Array  # (N, NZ, NZ)
-    predicted: Array  # (N, NZ) means before the row's measurements
+    means: Array  # (N, n)
+    covariances: Array  # (N, n, n)
+    transitions: Array  # (N, n, n)
+    predicted: Array  # (N, n) means before the row's measurements
 
 
 # Inside the filter
@@ -186,6 +187,16 @@ class FilterWorkspace(NamedTuple):
     H: Array  # (C, 2 NQ) rows of the measurement matrix
     outliers: Array  # (C,)
     memory: Array  # (MEMORY,) state of the actuators at the begin of an interval
+
+
+class SmootherWorkspace(NamedTuple):
+    """Preallocated work arrays of the smoother."""
+
+    ahead: Array  # (NZ, NZ) predicted covariance of the next row
+    cross: Array  # (NZ, NZ) covariance of the next row's state with the row's own
+    G: Array  # (NZ, NZ) gains
+    B: Array  # (NZ, NZ)
+    off: Array  # (NZ,) correction of the next row's mean
 
 
 class FilterPass(NamedTuple):

@@ -13,10 +13,11 @@ from .laws import (
     HAS_ADVANCE_MOTION_MEMORY,
     HAS_TIME_TO_DISCONTINUITY,
     HELD,
+    MEMORY,
     advance_channels,
     time_to_discontinuity,
 )
-from .motion import NQ, K, advance_memory_of_motion, step_in_place
+from .motion import NQ, K, advance_memory_of_motion, step_in_place, total_body_force
 
 # [s] Shortest part of a step; within one, a signal that jumps is replaced by its mean.
 SHORTEST = 1e-6
@@ -73,6 +74,35 @@ def minimum_substep(part: float, before: float, least: float) -> float:
     It grows where the parts become ever shorter, from a part of length `before` to `part`.
     """
     return GROWS * least if part <= least or part < before else SHORTEST
+
+
+@compiled
+def mean_actuator_signals(
+    first: Array, commands: Array, steps: Array, p: Array, on: Any, out: Array
+) -> None:
+    """Simulate all actuators of a vessel along the rows of a recording.
+
+    They begin settled to the commands `first`. Row i of `commands` (N, C) acts for a time steps[i].
+    Fills out (N, HELD) with the mean signals over these times.
+    """
+    act, memory = np.zeros(3 * HELD), np.zeros(MEMORY)
+    settle_actuators(first, memory, p, on, act)
+    for i in range(len(steps)):
+        advance_actuators(commands[i], memory, steps[i], p, on, act)
+        for j in range(HELD):
+            out[i, j] = (act[j] + 4.0 * act[HELD + j] + act[2 * HELD + j]) / 6.0
+
+
+@compiled
+def total_body_forces(states: Array, held: Array, p: Array, on: Any, out: Array) -> None:
+    """Compute the body forces of all effects at each of several states (N, 2 NQ).
+
+    `held` (N, HELD) are the actuator signals there. Fills out (N, NQ).
+    """
+    for i in range(len(states)):
+        force = total_body_force(0.0, states[i], held[i], np.int64(0), p, on)
+        for j in range(NQ):
+            out[i, j] = force[j]
 
 
 @compiled

@@ -50,6 +50,13 @@ class PackedRecord(NamedTuple):
     record: Any  # its arrays must live as long as the addresses are used
 
 
+class PackedArgument(NamedTuple):
+    """An argument of a function and its words, which are looked up once."""
+
+    words: bytes  # empty where no C library is used
+    value: Any  # its arrays must live as long as the words are used
+
+
 class NativeFunction:
     """A function of a C library as a Python function."""
 
@@ -67,6 +74,11 @@ class NativeFunction:
         self._pack = struct.Struct("=" + "".join(map(_format, every))).pack
 
     @property
+    def argument_kinds(self) -> Sequence[Kind]:
+        """Kinds of the arguments."""
+        return self._kinds
+
+    @property
     def address(self) -> int:
         """Address of the C function."""
         return int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
@@ -80,7 +92,7 @@ class NativeFunction:
         Raises:
             TypeError: An array is not contiguous, or has another type or number of dimensions.
         """
-        return self._run(self.pack_arguments(*given))
+        return self.call_with_words(self.pack_arguments(*given))
 
     def pack_arguments(self, *given: Any) -> bytes:
         """Return arguments as words. The arrays among them must live as long as these are used."""
@@ -124,7 +136,12 @@ class NativeFunction:
         call_function.__dict__["arrays"] = given  # they must live as long as the addresses are used
         return call_function
 
-    def _run(self, words: bytes) -> Any:
+    def call_with_words(self, words: Any) -> Any:
+        """Call the function with packed arguments.
+
+        Args:
+            words: The arguments, as `pack_arguments` returns them, or the address of such words.
+        """
         if self._result is None:
             self.function(words, None)
             return None
@@ -217,6 +234,76 @@ def partial_call(code: Any, name: str, *given: Any) -> Callable[..., Any]:
         return function(*full)
 
     return call_function
+
+
+class BoundCall:
+    """A call of a program's function that is repeated while few of its arguments change.
+
+    Only the words of an argument that changes are written again, which takes a fraction of the time
+    in which all arguments are packed. Two threads must not use it at the same time.
+    """
+
+    def __init__(self, code: Any, name: str, *given: Any) -> None:
+        """Bind all arguments.
+
+        Args:
+            code: The program's functions, from C or from numba.
+            name: Name of the function.
+            *given: Its arguments, of which later calls may replace some.
+        """
+        function = getattr(code, name)
+        self._given = list(given)
+        self._function = function
+        self._native = isinstance(function, NativeFunction)
+        if self._native:
+            self._kinds = function.argument_kinds
+            self._packs, self._bytes = _packers(self._kinds)
+            self._words = ctypes.create_string_buffer(function.pack_arguments(*given))
+            self._memory = memoryview(self._words).cast("B")
+            self._address = ctypes.cast(self._words, ctypes.c_char_p)
+
+    def pack(self, place: int, value: Any) -> PackedArgument:
+        """Return an argument with its words, to be replaced several times.
+
+        Args:
+            place: Place of the argument.
+            value: Its value. Its arrays are not replaced later.
+        """
+        if not self._native:
+            return PackedArgument(b"", value)
+        flat: list[Any] = []
+        _flatten(self._kinds[place], value, flat)
+        return PackedArgument(self._packs[place](*flat), value)
+
+    def replace(self, place: int, argument: PackedArgument) -> None:
+        """Replace an argument in all later calls.
+
+        Args:
+            place: Place of the argument.
+            argument: The argument, as `pack` returns it.
+        """
+        self._given[place] = argument.value
+        if self._native:
+            self._memory[self._bytes[place]] = argument.words
+
+    def __call__(self) -> Any:
+        """Call the function."""
+        if self._native:
+            return self._function.call_with_words(self._address)
+        return self._function(*self._given)
+
+
+def _packers(kinds: Sequence[Kind]) -> tuple[list[Callable[..., bytes]], list[slice]]:
+    """Functions that pack each argument, and the bytes that each takes among all words."""
+    packs: list[Callable[..., bytes]] = []
+    places: list[slice] = []
+    end = 0
+    for kind in kinds:
+        one = struct.Struct("=" + "".join(map(_format, scalar_and_array_kinds(kind))))
+        packs.append(one.pack)
+        places.append(slice(end, end + one.size))
+        end += one.size
+    return packs, places
 
 
 def _places_of_numbers(given: Sequence[Any]) -> list[int]:

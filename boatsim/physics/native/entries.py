@@ -67,6 +67,8 @@ ON_MUJOCO: Mapping[str, Entry] = {
 ESTIMATION: Mapping[str, Entry] = {
     **COMMON,
     "oscillating_force": Entry((VECTOR, VECTOR), OscillatingForce),
+    "mean_actuator_signals": Entry((VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX)),
+    "total_body_forces": Entry((MATRIX, MATRIX, VECTOR, VECTOR, MATRIX)),
     "acceleration_jacobian": Entry(
         (REAL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX),
     ),

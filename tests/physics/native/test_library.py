@@ -11,13 +11,14 @@ from alike import long
 
 from boatsim.diagnosis.candidates import diagnosis_program
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.native import build
-from boatsim.physics.native.calls import partial_call
+from boatsim.physics.native.calls import BoundCall, partial_call
 from boatsim.physics.native.library import NativeProgram, translate_program
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, load_vessel
@@ -138,6 +139,46 @@ def test_a_prepared_call_returns_several_numbers_of_its_present_arguments() -> N
         y[program.module.NQ] = speed
         assert force() == program.simulation_functions.total_body_force(*given)
     assert force()[0] < 0.0  # resistance
+
+
+def test_a_repeated_call_uses_the_arguments_that_were_replaced_last() -> None:
+    program = Program(load_vessel("joystick_boat"))
+    states = np.zeros((2, 2 * program.module.NQ))
+    states[:, program.module.NQ] = 0.5, 1.0
+    held = np.zeros((2, program.actuator_signal_size // 3))
+    found = []
+    for code in (program.estimation_functions, program.module):
+        first, second = np.zeros((2, program.module.NQ)), np.zeros((2, program.module.NQ))
+        rest = held, program.values(), program.effect_switches()
+        call = BoundCall(code, "total_body_forces", np.zeros_like(states), *rest, first)
+        call()
+        assert not first.any()
+        call.replace(0, call.pack(0, states))
+        call.replace(4, call.pack(4, second))
+        call()
+        assert not first.any() and (np.diff(second[:, 0]) < 0.0).all()  # more resistance
+        found.append(second)
+    assert np.array_equal(*found)
+
+
+def test_forces_and_actuators_along_a_recording_are_those_of_single_calls() -> None:
+    vessel = load_vessel("joystick_boat")
+    program = Program(vessel)
+    code, nq = program.estimation_functions, program.module.NQ
+    values, on = program.values(), program.effect_switches()
+    mapped = map_recording(cruise(vessel), program)
+    held = actuator_states(mapped)
+    memory, act = np.zeros(program.memory_size), np.zeros(program.actuator_signal_size)
+    code.settle_actuators(mapped.commands[0], memory, values, on, act)
+    states = np.random.default_rng(0).normal(0.0, 0.3, (len(held), 2 * nq))
+    forces = body_forces(mapped, states, held, values)
+    for row, step in enumerate(np.diff(mapped.times)):
+        code.advance_actuators(mapped.commands[row], memory, step, values, on, act)
+        begin, middle, end = act.reshape(3, -1)
+        assert np.array_equal(held[row], (begin + 4.0 * middle + end) / 6.0)
+        single = code.total_body_force(0.0, states[row], held[row], np.int64(0), values, on)
+        assert tuple(forces[row]) == single
+    assert np.ptp(held[:, 0]) > 0.0
 
 
 def test_an_array_of_another_type_is_refused() -> None:
