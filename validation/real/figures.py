@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnosis import pipeline
+from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
@@ -33,6 +33,7 @@ class Figures:
 
     title: str
     diagnosis: Diagnosis
+    held_out: Sequence[MappedRecording]
     errors: Mapping[float, Mapping[str, Mapping[str, float]]]  # window, family, model -> rms
     cpu_s: float  # of the diagnosis
     by_source: Mapping[str, Mapping[str, float]] | None = None  # in the windows of the source
@@ -91,6 +92,25 @@ def held_out_errors(
     return rms_errors(free_runs(diagnosis.problem, fits, held_out, window))
 
 
+def map_held_out(
+    diagnosis: Diagnosis, fitted: Sequence[Path], held_out: Sequence[Path], vessel: str
+) -> list[MappedRecording]:
+    """Return held-out runs with the corrections of the diagnosis, mapped to its program.
+
+    The times that its findings leave out, such as rest, are kept: the README judges them, too.
+
+    Args:
+        diagnosis: The diagnosis.
+        fitted: Recordings that it fitted; they decide about corrections of all.
+        held_out: Held-out recordings.
+        vessel: Name or path of the vessel.
+    """
+    loaded = loading.load_recordings(loading.Request(fitted, held_out, vessel))
+    return [
+        diagnosis.map_recording(run, vessel=loaded.vessels[run.path]) for run in loaded.held_out
+    ]
+
+
 def diagnose_set(
     title: str,
     fitted: Sequence[Path],
@@ -121,14 +141,14 @@ def diagnose_set(
     print_statements(title, diagnosis, cpu_s)
     write_diagnosis(diagnosis, out)
     print(f"  report: {out / 'report.html'}", flush=True)
-    runs = diagnosis.held_out
+    runs = map_held_out(diagnosis, fitted, held_out, vessel)
     errors = {window: held_out_errors(diagnosis, runs, window) for window in windows}
     by_source = None
     if source:
         fits = compared_fits(diagnosis.ranking)
         begun = free_runs(diagnosis.problem, fits, runs, windows[0], source.skipped)
         by_source = rms_errors([run for run in begun if source.contains(run)])
-    return Figures(title, diagnosis, errors, cpu_s, by_source)
+    return Figures(title, diagnosis, runs, errors, cpu_s, by_source)
 
 
 def progress_printer() -> Report:

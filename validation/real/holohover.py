@@ -251,7 +251,7 @@ def print_build(figures: Figures, build: str, names: Sequence[str]) -> None:
         build: Name of the build.
         names: Names of the held-out runs of the build.
     """
-    own = [run for run in figures.diagnosis.held_out if run.name in names]
+    own = [run for run in figures.held_out if run.name in names]
     rows = []
     for window in WINDOWS:
         families = held_out_errors(figures.diagnosis, own, window)

@@ -112,10 +112,9 @@ def median_errors(
 
 def with_medians(figures: Figures) -> Figures:
     """Return figures whose errors are medians over windows, in addition to the rms over all."""
-    runs = figures.diagnosis.held_out
     errors = {}
     for window, families in figures.errors.items():
-        median = median_errors(figures.diagnosis, runs, window)
+        median = median_errors(figures.diagnosis, figures.held_out, window)
         errors[window] = {**families, "roll_median_rad": median}
     return replace(figures, errors=errors)
 
