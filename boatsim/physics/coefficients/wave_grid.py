@@ -23,7 +23,8 @@ HEAD = 4  # numbers of a table that describe its grid
 # Numbers of frequencies and of headings, of which the first is taken whose values in between are
 # accurate enough. The excitation of the Otter, 2 m long, in waves of half its length and more needs
 # 96 and 37. A table that extends to shorter waves needs more. If the headings of a table are
-# equally spaced, only numbers are taken with which they are on the grid.
+# equally spaced, only numbers are taken with which they are on the grid, unless it has more of them
+# than the largest grid.
 FREQUENCIES = (96, 192, 384, 768)
 HEADINGS = (25, 31, 37, 49, 61, 73)
 ERROR = 0.01  # largest error of values on a grid, over the largest value of the axis
