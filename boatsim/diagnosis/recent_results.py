@@ -2,15 +2,19 @@
 
 from collections import OrderedDict
 from collections.abc import Callable
+from hashlib import blake2b
 from typing import Generic, TypeVar
 
 Result = TypeVar("Result")
+
+DIGEST = 16  # [bytes] two of a diagnosis' keys have the same digest with a probability below 1e-20
 
 
 class RecentResults(Generic[Result]):
     """Cache of the most recent results of a function without side effects.
 
-    Results are stored by the function's arguments, and the least recently used one is dropped.
+    Results are stored by a digest of the function's arguments, which can hold tables of megabytes,
+    and the least recently used one is dropped.
     """
 
     def __init__(self, most: int) -> None:
@@ -29,10 +33,11 @@ class RecentResults(Generic[Result]):
             key: The function's arguments as bytes.
             compute: Computes the result, which must not be changed afterwards.
         """
-        if key in self._kept:
-            self._kept.move_to_end(key)
-            return self._kept[key]
-        found = self._kept[key] = compute()
+        digest = blake2b(key, digest_size=DIGEST).digest()
+        if digest in self._kept:
+            self._kept.move_to_end(digest)
+            return self._kept[digest]
+        found = self._kept[digest] = compute()
         if len(self._kept) > self._most:
             self._kept.popitem(last=False)
         return found

@@ -17,6 +17,7 @@ from boatsim.physics.signals import AXES, Array
 
 FIELDS: dict[Kind, str] = {"motion": "motionRAO", "load": "forceRAO"}
 DRIFT_AXES = (0, 1, 5)  # surge, sway and yaw, in this order in the structure
+DRIFT_NEEDS = "needs w, and amp of surge, sway and yaw at each of the headings and velocities"
 SAME_SPEED = 1e-3  # [m/s]
 
 
@@ -36,7 +37,6 @@ def read_mss(path: Path, depth: float, speed: float, kind: Kind = "motion") -> R
 
     if not path.is_file():
         raise BadInput(f"{path}: there is no such file")
-    drift: tuple[Array, list[Array]] | None = None
     try:
         vessel: Any = loadmat(path, squeeze_me=True, struct_as_record=False)["vessel"]
         if not hasattr(vessel, FIELDS[kind]):
@@ -46,8 +46,6 @@ def read_mss(path: Path, depth: float, speed: float, kind: Kind = "motion") -> R
         heading = np.atleast_1d(np.asarray(vessel.headings, dtype=float))
         frequency, size = _tables(operators, operators.amp, len(heading))
         _, phase = _tables(operators, operators.phase, len(heading))
-        if hasattr(vessel, "driftfrc"):
-            drift = _tables(vessel.driftfrc, vessel.driftfrc.amp[:3], len(heading))
     except Exception:  # whatever the reader raises for damaged files and those of other programs
         raise BadInput(
             f"{path}: there is no structure `vessel` of MSS with motionRAO or forceRAO"
@@ -64,6 +62,7 @@ def read_mss(path: Path, depth: float, speed: float, kind: Kind = "motion") -> R
     waves = np.stack(np.meshgrid(frequency, heading, indexing="ij"), axis=-1).reshape(-1, 2)
     waves[:, 1] = (waves[:, 1] + np.pi + 1e-9) % (2.0 * np.pi) - np.pi - 1e-9
     grid = complete_table(waves, values.reshape(-1, 6), path)
+    drift = _drift_tables(vessel, len(heading), path)
     return RaoTable(
         source=f"MSS, {path.name}",
         kind=kind,
@@ -83,6 +82,33 @@ def _tables(operators: Any, values: Any, headings: int) -> tuple[Array, list[Arr
     return frequency, [np.asarray(one, dtype=float).reshape(shape) for one in values]
 
 
+def _drift_tables(vessel: Any, headings: int, path: Path) -> tuple[Array, list[Array]] | None:
+    """Return frequencies and tables of the mean drift in surge, sway and yaw.
+
+    Args:
+        vessel: The structure.
+        headings: Number of its headings.
+        path: File, for messages.
+
+    Returns:
+        Frequencies (M,) and three tables (M, H, speeds), or None if the structure has no drift.
+
+    Raises:
+        BadInput: Axes, frequencies or headings are missing.
+    """
+    part = getattr(vessel, "driftfrc", None)
+    if part is None or np.size(part) == 0 or np.size(getattr(part, "amp", 0.0)) == 0:
+        return None
+    try:
+        found = _tables(part, part.amp[: len(DRIFT_AXES)], headings)
+        complete = len(found[1]) == len(DRIFT_AXES)
+    except Exception:  # whatever damaged structures and those of other programs raise
+        complete = False
+    if not complete:
+        raise BadInput(f"{path}: driftfrc {DRIFT_NEEDS}")
+    return found
+
+
 def _mean_drift(
     drift: tuple[Array, list[Array]], frequency: Array, waves: Array, place: int, path: Path
 ) -> Array:
@@ -96,15 +122,18 @@ def _mean_drift(
         path: File, for messages.
 
     Raises:
-        BadInput: An axis is missing, a value is not finite, or the speed has no drift.
+        BadInput: A number is not finite, or the speed has no drift.
     """
     own, tables = drift
-    if len(tables) < len(DRIFT_AXES) or any(one.shape[2] <= place for one in tables):
-        raise BadInput(f"{path}: driftfrc needs surge, sway and yaw at each of the velocities")
+    if any(one.shape[2] <= place for one in tables):
+        raise BadInput(f"{path}: driftfrc {DRIFT_NEEDS}")
+    order = np.argsort(own)
     rows = np.zeros((len(frequency), len(waves) // len(frequency), 6), dtype=complex)
-    for axis, table in zip(DRIFT_AXES, tables, strict=False):
+    for axis, table in zip(DRIFT_AXES, tables, strict=True):
         for h, column in enumerate(table[:, :, place].T):
-            rows[:, h, axis] = np.interp(frequency, own, column)
+            rows[:, h, axis] = np.interp(frequency, own[order], column[order])
+    if not np.isfinite(rows).all():
+        raise BadInput(f"{path}: a number of driftfrc is not finite")
     values = complete_table(waves, rows.reshape(-1, 6), path)[2]
     return np.asarray(values[..., DRIFT_AXES].real)
 

@@ -184,6 +184,48 @@ def test_a_structure_of_mss_without_a_vessel_gives_its_loads_and_drift(tmp_path:
     assert written.drift[2, 0, 0] == pytest.approx(0.6)
 
 
+def drift_of_mss(path: Path, part: object) -> Array | None:
+    """Write a structure with motions of a follower and a part `driftfrc`; read its mean drift."""
+    table = np.array([[follower(w, b) for b in np.radians(DIRECTIONS)] for w in FREQUENCIES])
+    size, phase = np.empty(6, dtype=object), np.empty(6, dtype=object)
+    for i in range(6):
+        size[i], phase[i] = np.abs(table[:, :, i]), np.angle(table[:, :, i])
+    vessel: dict[str, object] = {"headings": np.radians(DIRECTIONS), "velocities": 0.0}
+    vessel["motionRAO"] = {"amp": size, "phase": phase, "w": FREQUENCIES}
+    savemat(path, {"vessel": {**vessel, "driftfrc": part}})
+    found = read_mss(path, 0.0, 0.0)
+    check_follower(found)
+    return found.drift
+
+
+def linear_drift(frequency: Array, headings: int = len(DIRECTIONS)) -> dict[str, object]:
+    """Mean drift of MSS that is equal to the frequency in surge, sway and yaw at all headings."""
+    size = np.empty(3, dtype=object)
+    for i in range(3):
+        size[i] = np.outer(frequency, np.ones(headings))
+    return {"amp": size, "w": frequency}
+
+
+def test_a_structure_of_mss_with_an_empty_drift_gives_its_motions(tmp_path: Path) -> None:
+    none = np.zeros((0, 0))
+    assert drift_of_mss(tmp_path / "ship.mat", none) is None
+    assert drift_of_mss(tmp_path / "ship.mat", {"amp": none, "w": none}) is None
+
+
+def test_frequencies_of_the_drift_of_mss_may_decrease(tmp_path: Path) -> None:
+    found = drift_of_mss(tmp_path / "ship.mat", linear_drift(np.array([0.7, 0.5, 0.2])))
+    assert found is not None
+    assert found == pytest.approx(np.broadcast_to(FREQUENCIES[:, None, None], found.shape))
+
+
+def test_incomplete_drift_of_mss_is_refused_by_its_name(tmp_path: Path) -> None:
+    frequency = np.array([0.2, 0.5, 0.7])
+    with pytest.raises(BadInput, match="driftfrc needs .* at each of the headings"):
+        drift_of_mss(tmp_path / "ship.mat", linear_drift(frequency, len(DIRECTIONS) - 2))
+    with pytest.raises(BadInput, match="a number of driftfrc is not finite"):
+        drift_of_mss(tmp_path / "ship.mat", linear_drift(np.array([0.2, 0.5, np.nan])))
+
+
 def test_mean_drift_of_mss_that_lacks_an_axis_is_refused(tmp_path: Path) -> None:
     size = np.empty(2, dtype=object)
     size[0] = size[1] = np.ones((len(FREQUENCIES), len(DIRECTIONS)))
@@ -194,7 +236,7 @@ def test_mean_drift_of_mss_that_lacks_an_axis_is_refused(tmp_path: Path) -> None
     vessel = {"headings": np.radians(DIRECTIONS), "velocities": 0.0, "forceRAO": operators}
     vessel["driftfrc"] = {"amp": size, "w": FREQUENCIES}
     savemat(tmp_path / "ship.mat", {"vessel": vessel})
-    with pytest.raises(BadInput, match="driftfrc needs surge, sway and yaw"):
+    with pytest.raises(BadInput, match="driftfrc needs w, and amp of surge, sway and yaw"):
         read_mss(tmp_path / "ship.mat", 0.0, 0.0)
 
 

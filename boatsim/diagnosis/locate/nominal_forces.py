@@ -55,7 +55,12 @@ def body_forces(
 
     Returns:
         Forces and moments (N, axes) [N, N m].
+
+    Raises:
+        ValueError: There is not one row of actuator states for each state.
     """
+    if len(states) != len(held):
+        raise ValueError(f"{len(states)} states and {len(held)} rows of actuator states")
     program = mapped.program
     on = program.effect_switches(effects)
     states = np.ascontiguousarray(states, dtype=float)

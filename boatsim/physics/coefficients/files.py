@@ -397,6 +397,8 @@ def _read_excitation(path: Path) -> tuple[Array, Array, Array]:
         raise BadInput(f"{path}: every frequency needs the same headings")
     if not np.allclose(table[:, :, 1], heading) or not np.all(np.diff(heading) > 0.0):
         raise BadInput(f"{path}: headings must increase and be the same at every frequency")
+    if len(frequency) < 2:
+        raise BadInput(f"{path}: there is one frequency; at least two are required")
     excitation = table[:, :, 2::2] + 1j * table[:, :, 3::2]
     return _increasing(frequency, path), heading, excitation
 

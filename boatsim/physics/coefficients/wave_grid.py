@@ -23,7 +23,8 @@ HEAD = 4  # numbers of a table that describe its grid
 # Numbers of frequencies and of headings, of which the first is taken whose values in between are
 # accurate enough. The excitation of the Otter, 2 m long, in waves of half its length and more needs
 # 96 and 37. A table that extends to shorter waves needs more. If the headings of a table are
-# equally spaced, only numbers are taken with which they are on the grid.
+# equally spaced, only numbers are taken with which they are on the grid, unless it has more of them
+# than the largest grid.
 FREQUENCIES = (96, 192, 384, 768)
 HEADINGS = (25, 31, 37, 49, 61, 73)
 ERROR = 0.01  # largest error of values on a grid, over the largest value of the axis
@@ -75,6 +76,8 @@ def grid_frequencies(
 ) -> Array:
     """Return equally spaced frequencies between which linear functions follow those of a table.
 
+    The error is that at the frequencies of the table and halfway between those of the grid.
+
     Args:
         frequency: Frequencies of the table (N,) [rad/s].
         function: Returns its values (F, ..., C) at frequencies (F,).
@@ -83,12 +86,25 @@ def grid_frequencies(
     """
     for count in FREQUENCIES:
         grid = np.linspace(frequency[0], frequency[-1], count)
-        on_grid = function(grid)
-        middle = function(0.5 * (grid[1:] + grid[:-1]))
-        found = np.abs(middle - 0.5 * (on_grid[1:] + on_grid[:-1]))
+        places = np.append(0.5 * (grid[1:] + grid[:-1]), frequency)
+        found = np.abs(_between_frequencies(grid, function(grid), places) - function(places))
         if np.all(found <= error * largest):
             break
     return grid
+
+
+def _between_frequencies(grid: Array, values: Values, places: Array) -> Values:
+    """Return values (P, ...) at frequencies between those of a grid, as compiled laws do.
+
+    Args:
+        grid: Frequencies of the grid (F,) [rad/s].
+        values: Values on the grid (F, ...).
+        places: Frequencies (P,) within the grid [rad/s].
+    """
+    along = (places - grid[0]) / (grid[1] - grid[0])
+    low = np.minimum(along.astype(int), len(grid) - 2)
+    part = (along - low).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((1.0 - part) * values[low] + part * values[low + 1])
 
 
 def grid_headings(

@@ -593,7 +593,7 @@ def smooth_states(
 ) -> None:
     """Smooth the filtered means and covariances of a recording in place (Rauch, Tung, Striebel).
 
-    Fills the smoother gains (N, NZ, NZ).
+    Fills the smoother gains (N, n, n) of the n entries of the state in use.
     """
     s, w = oscillating_force(p, on), instrument_drift(p, on)
     m, n = state_sizes(s, w)

@@ -9,7 +9,11 @@ import pytest
 from boatsim.errors import BadInput
 from boatsim.hydrodynamics.nemoh import read_nemoh
 from boatsim.hydrodynamics.wamit import OutputScale, read_wamit
-from boatsim.physics.coefficients.files import read_coefficients, write_coefficients
+from boatsim.physics.coefficients.files import (
+    read_coefficients,
+    read_wave_loads,
+    write_coefficients,
+)
 from boatsim.physics.coefficients.table import Coefficients
 
 OTTER = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
@@ -128,6 +132,15 @@ def test_drift_of_other_waves_than_the_excitation_is_refused(tmp_path: Path) -> 
     path.write_text("".join(path.read_text().splitlines(keepends=True)[:-1]))
     with pytest.raises(BadInput, match="must be those of excitation.csv"):
         read_coefficients(tmp_path / "copy")
+
+
+def test_excitation_at_one_frequency_is_refused(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "copy", replace(own(), drift=None))
+    path = tmp_path / "copy" / "excitation.csv"
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join(lines[: 1 + len(own().heading)]))
+    with pytest.raises(BadInput, match="excitation.csv: there is one frequency; at least two"):
+        read_wave_loads(tmp_path / "copy")
 
 
 @pytest.mark.parametrize("degrees", [False, True])

@@ -252,6 +252,21 @@ def test_a_table_of_a_small_hull_keeps_a_small_grid() -> None:
     assert count == 96.0 and headings <= 37.0
 
 
+def test_a_narrow_peak_of_the_mean_drift_is_on_the_grid() -> None:
+    # a resonance between two frequencies of the coarsest grid and next to none halfway
+    found = table_of_long_hull(1.25)
+    coarse = np.linspace(found.frequency[0], found.frequency[-1], 96)
+    peak = coarse[40] + 0.25 * (coarse[41] - coarse[40])
+    width = 0.2 * (coarse[41] - coarse[40])
+    frequency = np.sort(np.append(found.frequency, peak + width * np.array([-1.0, 0.0, 1.0])))
+    drift = np.full((len(frequency), len(found.heading), 3), 0.1)
+    drift[frequency == peak] = 1.0
+    loads = load_of_ends(frequency, found.heading)
+    resonant = replace(found, frequency=frequency, excitation=loads, drift=drift)
+    table = np.array([*excitation_grid(resonant, "resonant"), 0.0])
+    assert mean_drift_force(peak, 1.0, 0.0, table, np.int64(0))[0] > 0.7
+
+
 def test_an_axis_of_rounding_does_not_enlarge_the_grid() -> None:
     found = read_wave_loads(OTTER)
     noise = np.random.default_rng(3).normal(size=found.excitation.shape[:2])

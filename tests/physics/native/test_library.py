@@ -181,6 +181,15 @@ def test_forces_and_actuators_along_a_recording_are_those_of_single_calls() -> N
     assert np.ptp(held[:, 0]) > 0.0
 
 
+def test_states_without_their_rows_of_actuators_are_refused() -> None:
+    vessel = load_vessel("joystick_boat")
+    program = Program(vessel)
+    mapped = map_recording(cruise(vessel), program)
+    states = np.zeros((len(mapped.times), 2 * program.module.NQ))
+    with pytest.raises(ValueError, match="60 states and 59 rows of actuator states"):
+        body_forces(mapped, states, actuator_states(mapped)[1:], program.values())
+
+
 def test_an_array_of_another_type_is_refused() -> None:
     code = Program(load_vessel("joystick_boat")).simulation_functions
     with pytest.raises(TypeError, match="float32 with 1 dimensions; allowed is a contiguous"):

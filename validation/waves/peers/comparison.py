@@ -13,7 +13,6 @@ from boatsim.physics.waves.field import WaveField
 
 COMPONENTS = 100.0  # waves of an irregular sea
 SAMPLES = 16  # of a period of a regular wave
-SMALL = 0.01  # share of the largest value of an axis below which its differences do not count
 
 
 def sea_of_table(folder: Path, loads: WaveLoads, **sea: object) -> PanelWaveLoads:
