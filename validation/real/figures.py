@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis.checks import data_cleaning
+from boatsim.diagnosis.checks.order_signs import restore_order_signs
 from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
@@ -97,7 +99,8 @@ def map_held_out(
 ) -> list[MappedRecording]:
     """Return held-out runs with the corrections of the diagnosis, mapped to its program.
 
-    The times that its findings leave out, such as rest, are kept: the README judges them, too.
+    All their rows are kept: a diagnosis thins many long runs and leaves out times such as rest,
+    while the README judges models by everything that was recorded.
 
     Args:
         diagnosis: The diagnosis.
@@ -105,10 +108,13 @@ def map_held_out(
         held_out: Held-out recordings.
         vessel: Name or path of the vessel.
     """
-    loaded = loading.load_recordings(loading.Request(fitted, held_out, vessel))
-    return [
-        diagnosis.map_recording(run, vessel=loaded.vessels[run.path]) for run in loaded.held_out
-    ]
+    opened = [loading.open_recording(file, vessel, ()) for file in (*fitted, *held_out)]
+    runs = restore_order_signs([run for run, _ in opened], opened[0][1], len(fitted))
+    mapped = []
+    for run, (_, boat) in list(zip(runs, opened, strict=True))[len(fitted) :]:
+        cleaned = data_cleaning.clean_recording(run, boat)
+        mapped.append(diagnosis.map_recording(cleaned, vessel=boat))
+    return mapped
 
 
 def diagnose_set(
