@@ -260,7 +260,7 @@ class BoundCall:
             self._packs, self._bytes = _packers(self._kinds)
             self._words = ctypes.create_string_buffer(function.pack_arguments(*given))
             self._memory = memoryview(self._words).cast("B")
-            self._address = ctypes.cast(self._words, ctypes.c_char_p)
+            self._words_address = ctypes.cast(self._words, ctypes.c_char_p)
 
     def pack(self, place: int, value: Any) -> PackedArgument:
         """Return an argument with its words, to be replaced several times.
@@ -289,7 +289,7 @@ class BoundCall:
     def __call__(self) -> Any:
         """Call the function."""
         if self._native:
-            return self._function.call_with_words(self._address)
+            return self._function.call_with_words(self._words_address)
         return self._function(*self._given)
 
 
