@@ -21,8 +21,8 @@ from boatsim.physics.signals import Array
 
 HEAD = 4  # numbers of a table that describe its grid
 # Numbers of frequencies and of headings, of which the first is taken whose values in between are
-# accurate enough. The excitation of the Otter, 2 m long, in waves of half its length and more needs
-# 96 and 37. A table that extends to shorter waves needs more. If the headings of a table are
+# accurate enough. The excitation of a small hull in waves of half its length and more needs the
+# smallest ones. A table that extends to shorter waves needs more. If the headings of a table are
 # equally spaced, only numbers are taken with which they are on the grid, unless it has more of them
 # than the largest grid.
 FREQUENCIES = (96, 192, 384, 768)

@@ -20,7 +20,7 @@ def cosine_and_sine(x: float) -> tuple[float, float]:
     """Return the cosine and the sine of an angle x [rad], with errors of about 1e-16.
 
     For small angles the Taylor series are summed, in pairs of terms that a processor computes side
-    by side. This takes about half the time of a call of the C library.
+    by side, which is faster than a call of the C library.
     """
     if abs(x) > SMALL:
         return cos(x), sin(x)

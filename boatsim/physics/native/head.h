@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 /* Branches stay branches: those of laws and actuators are predicted nearly always, while conditional
-   moves compute both cases and wait for the condition. Steps of a batch take 8 % less time by this.
-   As a pragma, because other compilers refuse the flag. */
+   moves compute both cases and wait for the condition. As a pragma, because other compilers refuse
+   the flag. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-if-conversion")
 #endif
