@@ -1,8 +1,9 @@
 """Orders to drives that lost their sign, next to the force and the moment they were computed from.
 
 A program that turns a force and a moment into shaft rates takes a square root. Some log its size
-only, exchange the sides where the force is astern, or log zero for a drive that should push astern.
-The force and the moment in the same log show what was asked for.
+only, or zero for a drive that should push astern. Others compute the orders for the size of the
+force and turn its direction afterwards, so that the sides are exchanged while it is astern. The
+force and the moment in the same log show what was asked for.
 """
 
 from collections.abc import Mapping
@@ -19,6 +20,7 @@ EXACT = 0.01  # of the range: a computed order differs from its law by rounding 
 MIN_EXACT_SHARE = 0.8  # of the rows with a positive order, that the law must meet
 REFITS = 10  # at most, each to the rows that the law before met
 MIN_ROWS = 20  # of a fit
+MIRRORED = 0.05  # of a coefficient, by which the laws of two drives at equal distance may differ
 MIN_NEGATIVE = 5  # rows in which an order should be negative: single ones may be faulty cells
 
 
@@ -108,6 +110,66 @@ def order_law(values: Array, force: Array, moment: Array) -> OrderLaw:
     """
     laws = [_fitted_law(values, force, moment, squared) for squared in (True, False)]
     return max(laws, key=lambda law: law.exact)
+
+
+def signed_orders(
+    orders: Mapping[str, Array], laws: Mapping[str, OrderLaw], force: Array
+) -> dict[str, dict[str, Array]]:
+    """Return what the drives may have done with orders that lost their sign.
+
+    Args:
+        orders: Name -> orders as logged (N,), none negative.
+        laws: Name -> the law of these orders.
+        force: Force ahead (N,) that was asked for; nan where unknown.
+
+    Returns:
+        Possibility -> name -> signed orders (N,):
+
+        - `computed`: the law holds in each row in which an order should be negative.
+        - `signed`: sizes as logged; those that should be negative are, and zero stays.
+        - `idle`: the drives do not push astern and stand still instead.
+        - `exchanged`: where the force is astern all orders are negative, and drives opposite each
+          other have exchanged theirs. It is there only if each drive has one opposite.
+    """
+    rows = rows_without_sign(laws)
+    possible = {
+        "computed": {name: law.with_sign(orders[name], rows) for name, law in laws.items()},
+        "signed": {
+            name: np.where(law.negative, -orders[name], orders[name]) for name, law in laws.items()
+        },
+        "idle": {name: np.where(law.negative, 0.0, orders[name]) for name, law in laws.items()},
+    }
+    opposite = _opposite_drives(laws)
+    if len(opposite) == len(laws):
+        astern = force < 0.0
+        possible["exchanged"] = {
+            name: np.where(astern, -orders[opposite[name]], orders[name]) for name in laws
+        }
+    return possible
+
+
+def _opposite_drives(laws: Mapping[str, OrderLaw]) -> dict[str, str]:
+    """Name of a drive -> the one whose law has the same force and the opposite moment."""
+    opposite = {}
+    for name, law in laws.items():
+        for other, its in laws.items():
+            same_force = abs(its.a - law.a) <= MIRRORED * abs(law.a)
+            if same_force and abs(its.b + law.b) <= MIRRORED * max(abs(law.b), abs(its.b)):
+                opposite[name] = other
+    return opposite
+
+
+def asked_efforts(orders: Mapping[str, Array], laws: Mapping[str, OrderLaw]) -> tuple[Array, Array]:
+    """Return the force ahead and the moment (N,) each to which signed orders add up, by their laws.
+
+    Args:
+        orders: Name -> signed orders (N,).
+        laws: Name -> law of these orders.
+    """
+    shares = np.array([[law.a, law.b] for law in laws.values()])  # (drives, 2)
+    forces = np.array([law.force(orders[name]) for name, law in laws.items()])  # (drives, N)
+    force, moment = np.linalg.pinv(shares) @ forces
+    return force, moment
 
 
 def _fitted_law(values: Array, force: Array, moment: Array, squared: bool) -> OrderLaw:

@@ -7,6 +7,7 @@ from boatsim.recordings.order_signs import (
     laws_of_unsigned_orders,
     order_law,
     rows_without_sign,
+    signed_orders,
 )
 
 RNG = np.random.default_rng(7)
@@ -112,3 +113,38 @@ def test_rows_without_force_and_moment_are_no_evidence_of_a_law() -> None:
     orders = {name: rng.uniform(1.0, 90.0, len(FORCE)) for name in TRUE}
     force = np.where(rng.uniform(size=len(FORCE)) < 0.15, FORCE, np.nan)
     assert laws_of_unsigned_orders(orders, force, MOMENT) == {}
+
+
+def test_orders_for_the_size_of_the_force_are_turned_round_with_their_sides() -> None:
+    """A program that turns the direction of its force turns -P and -S of opposite drives."""
+    orders = LOGGED["size of the force"]
+    possible = signed_orders(orders, laws_of_unsigned_orders(orders, FORCE, MOMENT), FORCE)
+    assert possible.keys() == {"computed", "signed", "idle", "exchanged"}
+    port, starboard = orders["n_port"], orders["n_starboard"]
+    astern = FORCE < 0.0
+    assert np.array_equal(possible["exchanged"]["n_port"][astern], -starboard[astern])
+    assert np.array_equal(possible["exchanged"]["n_starboard"][astern], -port[astern])
+    for name in orders:
+        assert np.array_equal(possible["exchanged"][name][~astern], orders[name][~astern])
+    # where both push astern, this is what force and moment ask for
+    both = astern & (np.maximum(TRUE["n_port"], TRUE["n_starboard"]) < 0.0)
+    assert both.sum() > 50
+    assert possible["exchanged"]["n_port"][both] == pytest.approx(TRUE["n_port"][both], rel=1e-9)
+
+
+def test_sizes_as_logged_take_the_sign_alone() -> None:
+    for kind in ("size", "clipped"):
+        orders = LOGGED[kind]
+        possible = signed_orders(orders, laws_of_unsigned_orders(orders, FORCE, MOMENT), FORCE)
+        for name, values in possible["signed"].items():
+            assert np.array_equal(np.abs(values), orders[name])
+            small = TRUE[name] ** 2 < 0.02 * np.max(TRUE[name] ** 2)
+            expected = TRUE[name] if kind == "size" else orders[name]
+            assert values[~small] == pytest.approx(expected[~small], rel=1e-9)
+
+
+def test_sides_are_exchanged_only_between_opposite_drives() -> None:
+    """Without the drive of the other side none can have taken its order."""
+    orders = {"n_port": LOGGED["size"]["n_port"]}
+    laws = laws_of_unsigned_orders(orders, FORCE, MOMENT)
+    assert laws and "exchanged" not in signed_orders(orders, laws, FORCE)

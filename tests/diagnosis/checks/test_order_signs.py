@@ -33,12 +33,36 @@ def rates(force: np.ndarray, moment: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return port, starboard
 
 
-def logged_run(folder: Path, seed: int, astern: bool) -> Recording:
-    """A log of 10 Hz of an Otter whose drives push astern or not; it has the sizes of the rates."""
+def mirrored_rates(
+    force: np.ndarray, moment: np.ndarray
+) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """What a program logs, that never asks for less than zero, and what it makes of a force astern.
+
+    It computes orders for the size of the force and turns the direction of the force afterwards.
+    """
+    logged = tuple(np.maximum(values, 0.0) for values in rates(np.abs(force), moment))
+    port, starboard = logged
+    astern = force < 0.0
+    done = np.where(astern, -starboard, port), np.where(astern, -port, starboard)
+    return (port, starboard), done
+
+
+def logged_run(
+    folder: Path, seed: int, astern: bool, mirrored: bool = False, sizes: bool = True
+) -> Recording:
+    """A log of 10 Hz of an Otter whose drives push astern or not, with the sizes of the rates.
+
+    Without `sizes` it has zero for a drive that does not push astern.
+    """
     force, moment = program(seed)
     port, starboard = rates(force, moment)
+    logged = np.abs(port), np.abs(starboard)
+    if mirrored:
+        logged, (port, starboard) = mirrored_rates(force, moment)
     if not astern:
         port, starboard = np.maximum(port, 0.0), np.maximum(starboard, 0.0)
+    if not sizes:
+        logged = port, starboard
     lines = [
         f'vessel = "otter"\nduration = {SEGMENT * COUNT}\nlog = 0.1\n[controller]\nuse = "open_loop"'
     ]
@@ -52,8 +76,8 @@ def logged_run(folder: Path, seed: int, astern: bool) -> Recording:
     for name, sd in (("x_m", 0.03), ("y_m", 0.03), ("psi_rad", 0.01), ("r_radps", 0.01)):
         values = np.unwrap(log[name]) if name == "psi_rad" else log[name]
         signals[name] = values + sd * rng.standard_normal(len(log.t))
-    for name, values in zip(CHANNELS, (port, starboard), strict=True):
-        signals[name] = np.abs(values[at])
+    for name, values in zip(CHANNELS, logged, strict=True):
+        signals[name] = values[at]
     signals["force_x_N"], signals["force_n_Nm"] = force[at], moment[at]
     return Recording(f"run_{seed}", log.t, signals)
 
@@ -72,8 +96,30 @@ def test_signs_that_the_vessel_followed_are_restored(tmp_path: Path) -> None:
         assert any("vessel followed the sign" in remark for remark in found.remarks)
 
 
-def test_sizes_of_drives_that_do_not_push_astern_stay_as_they_are(tmp_path: Path) -> None:
+def test_sides_that_a_program_exchanges_astern_are_put_right(tmp_path: Path) -> None:
+    """The orders of the force and moment would push one side ahead, which the program never did."""
+    logs = [logged_run(tmp_path, seed, astern=True, mirrored=True) for seed in (1, 2)]
+    for log, found in zip(logs, restore_order_signs(logs, load_vessel("otter"), 2), strict=True):
+        _, done = mirrored_rates(log["force_x_N"], log["force_n_Nm"])
+        for name, true in zip(CHANNELS, done, strict=True):
+            assert np.array_equal(found[name], true)
+            assert not np.array_equal(found[name], log[name])
+        assert any("sides are exchanged" in remark for remark in found.remarks)
+
+
+def test_drives_that_do_not_push_astern_stand_still(tmp_path: Path) -> None:
     logs = [logged_run(tmp_path, seed, astern=False) for seed in (1, 2)]
+    for log, found in zip(logs, restore_order_signs(logs, load_vessel("otter"), 2), strict=True):
+        for name, true in zip(CHANNELS, true_rates(log), strict=True):
+            large = np.abs(true * true) > 0.02 * np.max(true * true)
+            assert np.array_equal(
+                found[name][large], np.maximum(log[name] * np.sign(true), 0.0)[large]
+            )
+        assert any("stood still" in remark for remark in found.remarks)
+
+
+def test_orders_of_drives_that_do_not_push_astern_stay_as_they_are(tmp_path: Path) -> None:
+    logs = [logged_run(tmp_path, seed, astern=False, sizes=False) for seed in (1, 2)]
     for log, found in zip(logs, restore_order_signs(logs, load_vessel("otter"), 2), strict=True):
         assert found.remarks == log.remarks
         assert all(np.array_equal(found[name], log[name]) for name in CHANNELS)
