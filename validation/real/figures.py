@@ -21,12 +21,16 @@ from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.physics.base import Array
 from boatsim.progress import Report
 from validation.real.common import effects_of, format_fixed, parameter_text, print_table
 
 # The rms distance from the recorded position is this times the rms error over both coordinates
 DISTANCE = 2.0**0.5
 HEADER = ("figure", "before", "retuned", "corrected", "corrected / retuned")
+# with the errors of a vessel that keeps its first velocities, by which the READMEs measure runs
+HEADER_WITH_HELD = (HEADER[0], "velocities held", *HEADER[1:])
+HELD = "velocities_held"
 
 
 @dataclass(frozen=True)
@@ -90,8 +94,56 @@ def held_out_errors(
         held_out: Held-out runs, mapped to its program.
         window: Length of each free run [s].
     """
+    return rms_errors(compared_free_runs(diagnosis, held_out, window))
+
+
+def compared_free_runs(
+    diagnosis: Diagnosis, held_out: Sequence[MappedRecording], window: float, skipped: float = 0.0
+) -> list[FreeRun]:
+    """Return free runs of the three models, and of a vessel that keeps its first velocities.
+
+    Args:
+        diagnosis: The diagnosis whose three models are compared.
+        held_out: Held-out runs, mapped to its program.
+        window: Length of each free run [s].
+        skipped: Time from the first row of a run before which none starts [s].
+    """
     fits = compared_fits(diagnosis.ranking)
-    return rms_errors(free_runs(diagnosis.problem, fits, held_out, window))
+    found = free_runs(diagnosis.problem, fits, held_out, window, skipped)
+    fit, program = fits["recalibrated"], diagnosis.problem.program
+    first = []
+    for mapped in held_out:
+        values = diagnosis.problem.parameter_vector(mapped, fit.free, fit.theta)
+        on = program.effect_switches(fit.effects)
+        for _, states in mapped.free_runs(values, on, fit.levels, window, skipped):
+            first.append((mapped, states[0]))
+    for run, (mapped, state) in zip(found, first, strict=True):
+        run.channels[HELD] = velocities_held(mapped, state, run.t)
+    return found
+
+
+def velocities_held(mapped: MappedRecording, state: Array, t: Array) -> dict[str, Array]:
+    """Return the signals of a vessel that keeps its velocities in body axes.
+
+    Args:
+        mapped: A recording.
+        state: (2 NQ,) coordinates of the joints and their rates at the first time.
+        t: Times (M,) [s].
+    """
+    at = {mapped.signals[c]: code for c, code in enumerate(mapped.codes)}
+    rates, after = state[mapped.program.module.NQ :], t - t[0]
+    found = {}
+    for name, code in at.items():
+        if code < mapped.program.module.NQ:
+            found[name] = state[code] + rates[code] * after
+    if {"x_m", "y_m", "psi_rad"} <= found.keys():
+        x, y, psi = at["x_m"], at["y_m"], at["psi_rad"]
+        # a path of constant speed and yaw rate: an arc, by the mean of its directions
+        half = 0.5 * rates[psi] * after
+        chord = after * np.sinc(half / np.pi)
+        found["x_m"] = state[x] + chord * (rates[x] * np.cos(half) - rates[y] * np.sin(half))
+        found["y_m"] = state[y] + chord * (rates[x] * np.sin(half) + rates[y] * np.cos(half))
+    return found
 
 
 def map_held_out(
@@ -151,8 +203,7 @@ def diagnose_set(
     errors = {window: held_out_errors(diagnosis, runs, window) for window in windows}
     by_source = None
     if source:
-        fits = compared_fits(diagnosis.ranking)
-        begun = free_runs(diagnosis.problem, fits, runs, windows[0], source.skipped)
+        begun = compared_free_runs(diagnosis, runs, windows[0], source.skipped)
         by_source = rms_errors([run for run in begun if source.contains(run)])
     return Figures(title, diagnosis, runs, errors, cpu_s, by_source)
 
@@ -201,7 +252,7 @@ def print_figures(figures: Figures, units: Mapping[str, tuple[str, float]]) -> N
     if figures.by_source:
         window = next(iter(figures.errors))
         rows += error_rows(f"{window:g} s, windows of the README", figures.by_source, units)
-    print_table(figures.title, HEADER, rows)
+    print_table(figures.title, HEADER_WITH_HELD, rows)
 
 
 def error_rows(
@@ -218,6 +269,6 @@ def error_rows(
     """
     rows = []
     for family, (text, factor) in units.items():
-        rms = [families[family][model] * factor for model in MODELS]
-        rows.append([f"{text}, {window}", *format_fixed(2, *rms), f"{rms[2] / rms[1]:.2f}"])
+        rms = [families[family][model] * factor for model in (HELD, *MODELS)]
+        rows.append([f"{text}, {window}", *format_fixed(2, *rms), f"{rms[3] / rms[2]:.2f}"])
     return rows

@@ -23,7 +23,7 @@ from boatsim.physics.vessel import Vessel
 from validation.real.common import DEG, OUT, RECORDINGS, out_option, print_table, runs_of
 from validation.real.figures import (
     DISTANCE,
-    HEADER,
+    HEADER_WITH_HELD,
     Figures,
     diagnose_set,
     error_rows,
@@ -256,7 +256,7 @@ def print_build(figures: Figures, build: str, names: Sequence[str]) -> None:
     for window in WINDOWS:
         families = held_out_errors(figures.diagnosis, own, window)
         rows += error_rows(f"{window:g} s", families, UNITS)
-    print_table(f"{figures.title}, build {build}", HEADER, rows)
+    print_table(f"{figures.title}, build {build}", HEADER_WITH_HELD, rows)
 
 
 def main() -> None:
