@@ -127,7 +127,7 @@ def velocities_held(mapped: MappedRecording, state: Array, t: Array) -> dict[str
 
     Args:
         mapped: A recording.
-        state: (2 NQ,) coordinates of the joints and their rates at the first time.
+        state: (2 NQ,) coordinates, then rates in body axes, at the first time, as recorded.
         t: Times (M,) [s].
     """
     at = {mapped.signals[c]: code for c, code in enumerate(mapped.codes)}
@@ -138,11 +138,11 @@ def velocities_held(mapped: MappedRecording, state: Array, t: Array) -> dict[str
             found[name] = state[code] + rates[code] * after
     if {"x_m", "y_m", "psi_rad"} <= found.keys():
         x, y, psi = at["x_m"], at["y_m"], at["psi_rad"]
-        # a path of constant speed and yaw rate: an arc, by the mean of its directions
+        # a path of constant speeds and yaw rate: an arc, whose chord has the mean direction
         half = 0.5 * rates[psi] * after
-        chord = after * np.sinc(half / np.pi)
-        found["x_m"] = state[x] + chord * (rates[x] * np.cos(half) - rates[y] * np.sin(half))
-        found["y_m"] = state[y] + chord * (rates[x] * np.sin(half) + rates[y] * np.cos(half))
+        chord, bow = after * np.sinc(half / np.pi), state[psi] + half
+        found["x_m"] = state[x] + chord * (rates[x] * np.cos(bow) - rates[y] * np.sin(bow))
+        found["y_m"] = state[y] + chord * (rates[x] * np.sin(bow) + rates[y] * np.cos(bow))
     return found
 
 

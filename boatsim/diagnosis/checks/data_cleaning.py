@@ -1,7 +1,8 @@
 """Corrections that a diagnosis applies to a log automatically, and the findings about them.
 
-Repeated values and outliers are ignored, positions that contradict the velocities are dropped,
-positions that were logged late are moved, and rudder signs are aligned with the vessel.
+Repeated values and outliers are ignored, positions that contradict the velocities and poses that
+had queued are dropped, positions that were logged late are moved, and rudder signs are aligned with
+the vessel.
 """
 
 from collections.abc import Sequence
@@ -20,6 +21,7 @@ from boatsim.diagnosis.checks.order_signs import REMARK as SIGN_LOST
 from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.position_times import LATE_BY_ROWS, correct_position_times
+from boatsim.diagnosis.checks.queued_messages import QUEUED, drop_queued_messages
 from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
 from boatsim.diagnosis.checks.repeated_values import (
     FIX_REPEATED,
@@ -41,6 +43,7 @@ FINDING_OF_REMARK = {
     ACROSS_WRAP: "heading_across_wrap",
     INTERPOLATED: "interpolated",
     LATE_BY_ROWS: "position_times",
+    QUEUED: "queued_messages",
     "jump away and return": "outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
@@ -83,8 +86,8 @@ def clean_recording(
 ) -> Recording:
     """Downsample a prepared recording to the useful rate, and drop values that are no measurements.
 
-    These are values that a logger interpolated or repeated, and outliers. Positions that were
-    logged late are moved to the times of their rows first.
+    These are values that a logger interpolated or repeated, outliers, and poses of messages that
+    had queued. Positions that were logged late are moved to the times of their rows first.
 
     Args:
         recording: A prepared recording.
@@ -95,7 +98,8 @@ def clean_recording(
     Returns:
         The cleaned recording; ignored values are nan, and its remarks list each correction.
     """
-    measured = drop_interpolated_samples(correct_position_times(recording), config.checks)
+    on_time = correct_position_times(drop_queued_messages(recording))
+    measured = drop_interpolated_samples(on_time, config.checks)
     reduced = measured.thinned(priors.downsampling_rate(vessel, duration, config.load))
     return drop_faulty_values(reduced, vessel, config)
 

@@ -21,6 +21,11 @@ from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local_position
 from boatsim.recordings.importing.log import HUGE, Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.mapping import Map, Position
+from boatsim.recordings.importing.queued_messages import (
+    Queue,
+    late_samples,
+    queued_positions,
+)
 from boatsim.recordings.importing.regular_times import regular_times
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
@@ -46,7 +51,8 @@ from boatsim.recordings.repeated_values import repeated_rows, stale_rows
 from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_empty_rows, is_command
 
 # Columns of one fix
-TOGETHER = (("x_m", "y_m"), ("psi_rad",))
+PLACE = ("x_m", "y_m")
+TOGETHER = (PLACE, ("psi_rad",))
 # Prefixes of columns that, like commands, are in force until the next value
 HELD = (
     "stick_",
@@ -122,9 +128,14 @@ def convert_log(
     _check_heading(work)
     _drop_unfixed(work)
     _drop_repeats(work)
+    queues = _position_queues(work)
+    # before the rhythm of the positions, which would move theirs and leave the angles late
+    _drop_queued(work, queues, PLACE)
     _regularize_positions(work)
     rows, near = _row_times(work)
-    _drop_stale(work)  # after the times of the rows, in which commands go on
+    # after the times of the rows, in which commands go on
+    _drop_queued(work, queues, (*POSE, *RATES))
+    _drop_stale(work)
     signals: dict[str, Array] = {}
     for name, column in work.columns.items():
         if column.held:
@@ -421,6 +432,36 @@ def _drop_repeats(work: _Work) -> None:
                 work.columns[name] = replace(
                     c, given=Samples(c.given.t[~repeated], c.given.values[~repeated])
                 )
+
+
+def _position_queues(work: _Work) -> list[Queue]:
+    """Intervals in which positions were read that had queued during a stall."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return []
+    return list(queued_positions(x.given.t, x.given.values, y.given.values))
+
+
+def _drop_queued(work: _Work, queues: Sequence[Queue], names: Sequence[str]) -> None:
+    """Remove samples of some poses and rates that had queued with the positions."""
+    for queue in queues:
+        dropped = []
+        for name in names:
+            column = work.columns.get(name)
+            if column is None or column.held:
+                continue
+            t, values = column.given.t, column.given.values
+            late = late_samples(t, values, queue)
+            if late.any() and not late.all():
+                work.columns[name] = replace(column, given=Samples(t[~late], values[~late]))
+                dropped.append(name)
+        if dropped:
+            work.remark(
+                f"{', '.join(dropped)}: the samples from {queue.begin - work.begin:.4g} s to "
+                f"{queue.end - work.begin:.4g} s after the beginning had queued since "
+                f"{queue.last - work.begin:.4g} s; the vessel stands still over the gap and then "
+                f"moves too fast; they are omitted"
+            )
 
 
 def _regularize_positions(work: _Work) -> None:

@@ -1,0 +1,142 @@
+"""Messages that queued while a program did not read them: poses that are older than their rows.
+
+A link or a program stalls, and nothing is logged. Then the queued messages are read one after
+another, faster than they were sent: the recorded vessel stands still over the gap, and afterwards
+moves faster than before and after, until the queue is empty.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.physics.base import Array
+
+LONG_GAP = 5.0  # median intervals of fixes: a stall, not a lost message
+# A program that reads in bursts stalls all the time; then the rhythm of the sensor shows the times
+RARE, RARE_GAP = 95.0, 2.0  # percentile of the intervals, and how many times as long a stall is
+LEAST_GAP = 0.5  # [s] a shorter stall is a late message
+SMOOTH = 0.4  # [s] between fixes whose distances are summed: noise would lengthen the path
+USUAL = 4.0  # [s] before the gap and after the queue, of the speed of the vessel
+# Least ratio of the speed while the queue is read to those before and after. A vessel that
+# accelerates after a gap does not reach it at once and slow down as suddenly.
+FASTER = 1.5
+STOOD = 0.5  # of the distance at the usual speed, that the fixes may move over the gap
+# Share of the path at the usual speed since the gap began, from which on the queue is empty as soon
+# as the speed is usual again: noise of the speeds hides the rest
+NEARLY = 0.9
+LONGEST_QUEUE = 3.0  # of the gap: a queue that is read at less than 1.3 times its rate is not told
+LEAST_PATH = 0.5  # [m] that must be missing over the gap
+
+
+class Queue(NamedTuple):
+    """Interval in which queued positions were read.
+
+    Attributes:
+        last: Time of the last fix before the gap [s].
+        begin: Time of the first fix after the gap [s].
+        end: Time of the first fix that is on time again [s].
+    """
+
+    last: float
+    begin: float
+    end: float
+
+
+def queued_positions(t: Array, x: Array, y: Array) -> Iterator[Queue]:
+    """Yield the intervals in which queued positions were read.
+
+    Args:
+        t: Times of the rows (N,) [s].
+        x: Positions north (N,) [m]; nan where unknown.
+        y: Positions east (N,) [m]; nan where unknown.
+    """
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    if len(known) < 2:
+        return
+    changed = np.concatenate([[True], (np.diff(x[known]) != 0.0) | (np.diff(y[known]) != 0.0)])
+    rows = known[changed]
+    times, points = t[rows], np.column_stack([x[rows], y[rows]])
+    intervals = np.diff(times)
+    if len(intervals) < 2:
+        return
+    usual, rare = np.percentile(intervals, [50.0, RARE])
+    longest = max(LONG_GAP * usual, RARE_GAP * rare, LEAST_GAP)
+    on_time = -np.inf
+    for i in np.flatnonzero(intervals > longest):
+        if times[i] < on_time:
+            continue
+        end = _end_of_queue(times, points, int(i))
+        if end is not None:
+            on_time = times[end]
+            yield Queue(float(times[i]), float(times[i + 1]), float(on_time))
+
+
+def late_samples(t: Array, values: Array, queue: Queue) -> NDArray[np.bool_]:
+    """Return which samples of another signal (N,) had queued with the positions.
+
+    These are all after the last fix and before the end of the queue, if the signal stalled as well:
+    a sensor with a link of its own has new values in the gap.
+
+    Args:
+        t: Times of the samples (N,) [s].
+        values: Samples (N,); nan where none is known.
+        queue: Interval in which queued positions were read.
+    """
+    inside = values[(t > queue.last) & (t < queue.begin) & np.isfinite(values)]
+    before = values[(t <= queue.last) & np.isfinite(values)]
+    if np.any(inside != (before[-1] if len(before) else np.nan)):
+        return np.zeros(len(t), dtype=np.bool_)
+    return np.asarray((t > queue.last) & (t < queue.end))
+
+
+def _end_of_queue(t: Array, points: Array, i: int) -> int | None:
+    """Number of the fix at which a queue is empty that began after fix i; None if none queued."""
+    before = _speed(t, points, t[i] - USUAL, t[i])
+    gap = t[i + 1] - t[i]
+    stood = float(np.hypot(*(points[i + 1] - points[i])))
+    if before is None or before * gap < LEAST_PATH or stood > STOOD * before * gap:
+        return None
+    path, at = stood, i + 1
+    for j in range(i + 2, len(t)):
+        if t[j] - t[i + 1] > LONGEST_QUEUE * gap:
+            return None
+        if t[j] - t[at] < SMOOTH:
+            continue
+        path += float(np.hypot(*(points[j] - points[at])))
+        at = j
+        after = _speed(t, points, t[j], t[j] + USUAL)
+        if after is None:
+            return None
+        usual, most = 0.5 * (before + after), FASTER * max(before, after)
+        if path >= NEARLY * usual * (t[j] - t[i]):
+            fast = (path - stood) / (t[j] - t[i + 1])
+            return _first_usual(t, points, j, most) if fast >= most else None
+    return None
+
+
+def _first_usual(t: Array, points: Array, j: int, most: float) -> int:
+    """Number of the first fix from fix j on, after which the speed is at most `most` [m/s]."""
+    while True:
+        later = int(np.searchsorted(t, t[j] + SMOOTH))
+        if later >= len(t):
+            return j
+        if np.hypot(*(points[later] - points[j])) <= most * (t[later] - t[j]):
+            return j
+        j = later
+
+
+def _speed(t: Array, points: Array, begin: float, end: float) -> float | None:
+    """Mean speed [m/s] of the fixes of a time, along their path; None if there are too few."""
+    inside = np.flatnonzero((t >= begin) & (t <= end))
+    if len(inside) < 3 or t[inside[-1]] - t[inside[0]] < 0.25 * USUAL:
+        return None
+    kept = [int(inside[0])]
+    for k in inside[1:]:
+        if t[k] - t[kept[-1]] >= SMOOTH:
+            kept.append(int(k))
+    if len(kept) < 3:
+        return None
+    steps = np.diff(points[kept], axis=0)
+    return float(np.hypot(steps[:, 0], steps[:, 1]).sum() / (t[kept[-1]] - t[kept[0]]))
