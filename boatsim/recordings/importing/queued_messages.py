@@ -26,6 +26,7 @@ STOOD = 0.5  # of the distance at the usual speed, that the fixes may move over 
 # Share of the path at the usual speed since the gap began, from which on the queue is empty as soon
 # as the speed is usual again: noise of the speeds hides the rest
 NEARLY = 0.9
+QUIET = 0.5  # of the gap without a new value: the signal stalled with the positions
 LONGEST_QUEUE = 3.0  # of the gap: a queue that is read at less than 1.3 times its rate is not told
 LEAST_PATH = 0.5  # [m] that must be missing over the gap
 
@@ -76,19 +77,22 @@ def queued_positions(t: Array, x: Array, y: Array) -> Iterator[Queue]:
 def late_samples(t: Array, values: Array, queue: Queue) -> NDArray[np.bool_]:
     """Return which samples of another signal (N,) had queued with the positions.
 
-    These are all after the last fix and before the end of the queue, if the signal stalled as well:
-    a sensor with a link of its own has new values in the gap.
+    These are all before the end of the queue from the gap on, if the signal stalled as well: it has
+    no new value in most of the gap, while a sensor with a link of its own has.
 
     Args:
         t: Times of the samples (N,) [s].
         values: Samples (N,); nan where none is known.
         queue: Interval in which queued positions were read.
     """
-    inside = values[(t > queue.last) & (t < queue.begin) & np.isfinite(values)]
-    before = values[(t <= queue.last) & np.isfinite(values)]
-    if np.any(inside != (before[-1] if len(before) else np.nan)):
+    known = np.flatnonzero(np.isfinite(values) & (t < queue.begin))
+    if not len(known):
+        return np.asarray((t > queue.last) & (t < queue.end))
+    new = np.append(True, np.diff(values[known]) != 0.0)
+    newest = float(t[known[new]][-1])
+    if queue.begin - newest < QUIET * (queue.begin - queue.last):
         return np.zeros(len(t), dtype=np.bool_)
-    return np.asarray((t > queue.last) & (t < queue.end))
+    return np.asarray((t > max(newest, queue.last)) & (t < queue.end))
 
 
 def _end_of_queue(t: Array, points: Array, i: int) -> int | None:

@@ -116,6 +116,8 @@ def test_a_sensor_with_a_link_of_its_own_is_not_late() -> None:
     stalled = np.where((t > STALL) & (t < STALL + GAP), np.nan, 0.1 * t)
     assert np.array_equal(late_samples(t, stalled, queue), late)
     assert not late_samples(t, 0.1 * t, queue).any()
+    longer = np.where((t > STALL + 2.0) & (t < STALL + GAP), np.nan, 0.1 * t)
+    assert np.array_equal(late_samples(t, longer, queue), late & (t > STALL + 2.0))
 
 
 def test_an_import_omits_what_had_queued_and_says_so() -> None:
