@@ -123,7 +123,7 @@ def _end_of_queue(t: Array, points: Array, i: int) -> int | None:
 def _first_usual(t: Array, points: Array, j: int, most: float) -> int:
     """Number of the first fix from fix j on, after which the speed is at most `most` [m/s]."""
     while True:
-        later = int(np.searchsorted(t, t[j] + SMOOTH))
+        later = int(np.searchsorted(t, t[j] + 2.0 * SMOOTH))  # one step may be slow
         if later >= len(t):
             return j
         if np.hypot(*(points[later] - points[j])) <= most * (t[later] - t[j]):
