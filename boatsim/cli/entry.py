@@ -119,8 +119,9 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         yield "needs the facts", ", ".join(cls.facts)
     if cls.confounded_with:
         yield (
-            "only on request",
-            f"recordings cannot distinguish it from {' or '.join(cls.confounded_with)}",
+            "tested last" if cls.tried_last else "only on request",
+            f"recordings {'hardly' if cls.tried_last else 'cannot'} distinguish it from "
+            f"{' or '.join(cls.confounded_with)}",
         )
 
 

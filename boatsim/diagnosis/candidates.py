@@ -6,7 +6,7 @@ and its recordings decide.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import count, islice
 from typing import NamedTuple
 
@@ -53,6 +53,9 @@ class CandidateLibrary:
     # candidates that are not tested -> the fact, the vessel's reason, or the missing column
     excluded: Mapping[str, str]
     inapplicable: Mapping[str, str]  # effects that cannot act on this vessel -> what is missing
+    # excluded ones that are tested where the others leave a force unexplained -> those that
+    # recordings hardly distinguish from them
+    tried_last: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def compiled_effects(self) -> tuple[Effect, ...]:
@@ -106,7 +109,7 @@ def candidate_library(
     known: dict[str, object] = {**vessel.diagnosis.facts, **(facts or {})}
     reasons = _exclusions_by_vessel(vessel)
     entries = dict[str, Effect]()
-    excluded, inapplicable = dict[str, str](), dict[str, str]()
+    excluded, inapplicable, last = dict[str, str](), dict[str, str](), dict[str, tuple[str, ...]]()
     fewest = config.select.fewest_instances
     for source in _sources(vessel, own, fewest):
         kind = source.kind
@@ -128,6 +131,12 @@ def candidate_library(
             excluded[name] = (
                 f"recordings cannot distinguish it from {others}; add --library {name} to test it"
             )
+            if kind.tried_last:
+                excluded[name] = (
+                    f"recordings hardly distinguish it from {others}, and it is tried only where a "
+                    f"force stays unexplained; add --library {name} to test it"
+                )
+                last[name] = kind.confounded_with
             continue
         excluded.pop(name, None)
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
@@ -141,7 +150,7 @@ def candidate_library(
     together = replace(vessel, effects=(*vessel.effects, *entries.values()))
     check_bindings(together, f"{vessel.name}: library")
     placeholders = placeholder_effects(vessel, config.describe)
-    return CandidateLibrary(tuple(entries.values()), placeholders, excluded, inapplicable)
+    return CandidateLibrary(tuple(entries.values()), placeholders, excluded, inapplicable, last)
 
 
 def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:

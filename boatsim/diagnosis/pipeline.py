@@ -58,12 +58,14 @@ from boatsim.diagnosis.recalibration import (
     predicts_worse,
 )
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
+from boatsim.diagnosis.search.evidence import log_evidence_gains
 from boatsim.diagnosis.search.ranking import (
     Baseline,
     Ranking,
     fit_baseline,
     select_and_rank_candidates,
 )
+from boatsim.diagnosis.search.screening import screen
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.residual_description import (
     describe_residual_force as describe_residual,
@@ -248,7 +250,10 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
-    return _Selected(loaded, question, findings, decide_causes(question, selection))
+    decision = decide_causes(question, selection)
+    report_last = report_part_of(report, SELECTING[1], SELECTING[1])
+    loaded, question, decision = try_last_candidates(loaded, question, decision, report_last)
+    return _Selected(loaded, question, findings, decision)
 
 
 def _complete(selected: _Selected, begin: float, report: Report) -> Diagnosis:
@@ -466,6 +471,56 @@ def decide_causes(question: Question, selection: Selection) -> Decision:
     """
     problem, ranking = selection.problem, selection.ranking
     return judge_names(problem, ranking, question.held_out, len(question.candidates))
+
+
+def try_last_candidates(
+    loaded: LoadedRecordings,
+    question: Question,
+    decision: Decision,
+    report: Report = ignore_progress,
+) -> tuple[LoadedRecordings, Question, Decision]:
+    """Select again with candidates that are tried last, where these may explain what is left.
+
+    They are tried where a force stays unexplained, or where an effect was selected that they are
+    confounded with, and if they alone gain `select.last_gain`.
+
+    Args:
+        loaded: Recordings.
+        question: The same recordings, mapped, with the usual candidates.
+        decision: Selected effects with their probability.
+        report: Receives the progress.
+
+    Returns:
+        The recordings with these candidates requested, the question with them and its decision, if
+        one of them was selected and the model gains `select.last_gain`; else the arguments.
+    """
+    ranking, config = decision.ranking, question.problem.config
+    last = []
+    for name, rivals in question.library.tried_last.items():
+        confused = any(other in ranking.best.effects for other in rivals)
+        if name not in loaded.without and (ranking.has_unexplained_force_or_cause or confused):
+            last.append(name)
+    if not last:
+        return loaded, question, decision
+    wider = replace(loaded, library=(*loaded.library, *last))
+    again = set_up_estimation_problem(wider, config)
+    report(f"trying {', '.join(last)}")
+    compile_program(again.problem)
+    base = fit_baseline_models(again)
+    tested = [name for name in last if name in again.candidates]
+    alone = log_evidence_gains(screen(again.problem, base.recalibrated, tested), base.recalibrated)
+    if max(alone.values(), default=0.0) < config.select.last_gain:
+        return loaded, question, decision
+    other = decide_causes(again, select_candidates(again, base, wider, report))
+    selected = any(name in other.ranking.best.effects for name in tested)
+    if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:
+        return wider, again, other
+    return loaded, question, decision
+
+
+def _gain(ranking: Ranking) -> float:
+    """Evidence that the selected effects gain over the recalibrated vessel [nats]."""
+    return ranking.best.evidence - ranking.recalibrated.evidence
 
 
 def keep_undetermined_coefficients(question: Question, decision: Decision) -> Decision:

@@ -103,6 +103,14 @@ class SelectConfig:
     least_gain: float = setting(
         4.0, "nats", "Evidence that an identified effect must gain alone.", low=0.0
     )
+    last_gain: float = setting(
+        30.0,
+        "nats",
+        "Evidence that a candidate that is tried last must gain alone, and with the others beyond "
+        "those found before it. It has several parameters and starts, so that it takes up some of "
+        "any force that acts near a place.",
+        low=0.0,
+    )
     unknown_gain: float = setting(
         6.0,
         "nats",

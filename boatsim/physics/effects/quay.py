@@ -93,6 +93,7 @@ class Quay(Force):
     )
     tied_to: ClassVar[str] = "the quay"
     confounded_with: ClassVar = ("tether",)  # a taut line to the other side pulls alike
+    tried_last: ClassVar[bool] = True
     law: ClassVar = law
     strength: ClassVar = ("stiffness",)
     facts: ClassVar = {"track_m": ("north", "east", "north_reach", "east_reach")}

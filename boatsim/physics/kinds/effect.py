@@ -96,6 +96,8 @@ class Effect(CheckedParameters):
     once_per: ClassVar[str] = ""
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
+    # a candidate also where the others leave a force unexplained, or include a confounded one
+    tried_last: ClassVar[bool] = False
     # a random process: the filter tracks it, a simulation without data cannot
     random: ClassVar[bool] = False
     alone: ClassVar[bool] = False  # no candidate for a vessel that has one already
