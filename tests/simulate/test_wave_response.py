@@ -103,7 +103,8 @@ def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
         (["--waves", "fan_wind"], "fan_wind is no effect of waves; allowed are hull_buoyancy"),
         (["--waves", "strip_wave_loads,4"], "'4' is no parameter"),
         (["--waves", "strip_wave_lods"], "did you mean 'strip_wave_loads'"),
-        (["--speed", "2"], "--speed does not apply to response"),
+        (["--speed", "60"], "--speed 60: allowed is a number from 0 to 50 m/s"),
+        (["--angle", "20"], "--angle does not apply to response"),
     ],
 )
 def test_bad_input_is_one_line(options: list[str], message: str, tmp_path: Path) -> None:
