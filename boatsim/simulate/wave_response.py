@@ -30,7 +30,8 @@ MOST_FITS = 40  # 400 periods: a roll damped by 1 % of the critical damping has 
 # Frequency of the springs that hold place and heading, as a share of that of the waves: they change
 # the response by its square, 0.25 %
 SPRING_SHARE = 0.05
-# [sqrt(L / g)] in calm water after which the waves of the start have left a boat, and steps of such a unit
+# [sqrt(L / g)] in calm water after which the waves of the start have left a boat, in steps of a
+# thirtieth, as short as those in waves of a length
 SETTLING, SETTLING_STEPS = 40.0, 30
 # Frequency of encounter, as a share of that of the waves, below which there is no response: a boat
 # that runs with the waves is steered and accelerated by each of them, and does not oscillate
