@@ -19,6 +19,7 @@ from validation.waves import (
     section,
     wigley,
     wigley_pitch,
+    wigley_speed,
 )
 
 WORK = Path("out/validation/waves")
@@ -134,6 +135,75 @@ def print_wigley_pitch(folder: Path) -> None:
         counts.append(f"{name} {wigley_pitch.rows_within(every, name)}")
     known = sum(not np.isnan(row.measured) for row in every)
     print(f"within 10 % of the measured pitch, of {known} waves: {', '.join(counts)}")
+
+
+def print_wigley_speed(folder: Path) -> None:
+    """Print measured and computed heave, damping and loads of a Wigley hull at forward speed."""
+    table = wigley_speed.SlowTable(folder)
+    print(
+        "\nWigley hull III in head waves at forward speed, from coefficients at zero speed, against"
+    )
+    print(
+        "model tests (J. M. J. Journee, report 909, 1992, tables 2-III, 6-III and 8-III); none: no"
+    )
+    print("effect of speed but the frequency of encounter; body axes: equations of motion in body")
+    print(
+        "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
+    )
+    print("the diffraction at forward speed too, which panel_wave_loads leaves out")
+    print("  Fn  wave / L  heave   none          body axes     forward speed  diffraction")
+    rows = wigley_speed.heave_at_speed(table)
+    errors: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        cells = []
+        values = dict(zip(wigley_speed.METHODS, row.found, strict=True))
+        for name, found in (values | {"diffraction": row.diffraction}).items():
+            errors.setdefault(name, []).append((row.measured, found))
+            cells.append(f"{found:.3f} {100 * (found / row.measured - 1):+4.0f} %")
+        print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {row.measured:5.2f}  {'  '.join(cells)}")
+    words = [f"{name} {100 * wigley_speed.mean_error(own):.1f} %" for name, own in errors.items()]
+    print(f"mean error of heave: {', '.join(words)}")
+    print("pitch over 2 pi / L times the amplitude, of which no measured value is at hand")
+    for row in rows:
+        values = dict(zip(wigley_speed.METHODS, row.pitch, strict=True))
+        text = ", ".join(f"{name} {found:.3f}" for name, found in values.items())
+        print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {text}")
+    print("held hull at Fn 0.3, force over C33 a and moment over k C55 a")
+    print("wave / L  force  zero speed    moment  zero speed    diffraction")
+    loads = wigley_speed.wave_loads(table)
+    for load in loads:
+        force, moment = load.measured
+        cells = [
+            f"{force:.3f}  {load.zero_speed[0]:.3f} {100 * (load.zero_speed[0] / force - 1):+4.0f} %"
+        ]
+        cells.append(f" {moment:.3f}")
+        for pair in (load.zero_speed, load.diffraction):
+            cells.append(f"{pair[1]:.3f} {100 * (pair[1] / moment - 1):+4.0f} %")
+        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
+    before = [(load.measured[1], load.zero_speed[1]) for load in loads]
+    after = [(load.measured[1], load.diffraction[1]) for load in loads]
+    print(
+        f"mean error of the moment: zero speed {100 * wigley_speed.mean_error(before):.1f} %, "
+        f"diffraction {100 * wigley_speed.mean_error(after):.1f} %"
+    )
+    print("forced heave at Fn 0.3, on which strip theory has no effect of speed")
+    print("w sqrt(L / g)  A33 / rho V               B33 sqrt(L / g) / rho V")
+    for one in wigley_speed.forced_heave(table):
+        cells = []
+        for measured, found in (one.added_mass, one.damping):
+            cells.append(f"{measured:.3f}  {found:.3f} {100 * (found / measured - 1):+4.0f} %")
+        print(f"{one.frequency:13.2f}  {'      '.join(cells)}")
+    print(
+        f"forced pitch, B55 sqrt(L / g) / (rho V L^2) at w sqrt(L / g) = "
+        f"{wigley_speed.FORCED_PITCH_AT:g}"
+    )
+    for froude, measured, found in wigley_speed.pitch_damping(table):
+        values = dict(zip(wigley_speed.METHODS, found, strict=True))
+        text = ", ".join(
+            f"{name} {value:.3f} ({100 * (value / measured - 1):+.0f} %)"
+            for name, value in values.items()
+        )
+        print(f"Fn {froude:.1f}  measured {measured:.3f}, {text}")
 
 
 def print_righting_arms() -> None:
@@ -269,6 +339,7 @@ def main() -> None:
         print_drift(folder)
         print_wigley(folder)
         print_wigley_pitch(folder)
+        print_wigley_speed(folder)
     else:
         print("hulls by boundary elements: skipped, Capytaine is not installed")
     print_regular(folder)
