@@ -17,6 +17,7 @@ from validation.waves import (
     response,
     righting_arms,
     section,
+    ship_speed,
     wigley,
     wigley_pitch,
     wigley_speed,
@@ -173,9 +174,8 @@ def print_wigley_speed(folder: Path) -> None:
     loads = wigley_speed.wave_loads(table)
     for load in loads:
         force, moment = load.measured
-        cells = [
-            f"{force:.3f}  {load.zero_speed[0]:.3f} {100 * (load.zero_speed[0] / force - 1):+4.0f} %"
-        ]
+        own = load.zero_speed[0]
+        cells = [f"{force:.3f}  {own:.3f} {100 * (own / force - 1):+4.0f} %"]
         cells.append(f" {moment:.3f}")
         for pair in (load.zero_speed, load.diffraction):
             cells.append(f"{pair[1]:.3f} {100 * (pair[1] / moment - 1):+4.0f} %")
@@ -204,6 +204,49 @@ def print_wigley_speed(folder: Path) -> None:
             for name, value in values.items()
         )
         print(f"Fn {froude:.1f}  measured {measured:.3f}, {text}")
+
+
+def print_ship_speed(mss: Path) -> None:
+    """Print coefficients and motions of a ship at forward speed next to those of VERES."""
+    ship = ship_speed.read_ship(mss)
+    print("\nContainer ship S-175 of the MSS toolbox, strip theory by VERES 4.02 at five speeds:")
+    print("largest error of added mass and damping at speed over the largest of the axes [%], from")
+    print("those at zero speed with the terms of forward speed and without")
+    print("Fn    with: heave, pitch  sway, roll, yaw   without: heave, pitch  sway, roll, yaw")
+    for speed, *errors in ship_speed.coefficient_errors(ship):
+        froude = speed / np.sqrt(ship_speed.GRAVITY * ship.length)
+        first, second, third, fourth = (100.0 * error for error in errors)
+        print(f"{froude:.3f} {first:19.2f} {second:16.2f} {third:23.1f} {fourth:16.1f}")
+    print(
+        "motion in head waves over that of VERES, with its loads at the speed; none: no effect of"
+    )
+    print(
+        "speed but the frequency of encounter; body: equations of motion in body axes; terms: with"
+    )
+    print("the terms of forward speed; loads: these with its loads at zero speed")
+    print(
+        "Fn     wave / L  heave  none   body   terms  loads      pitch  none   body   terms  loads"
+    )
+    rows = ship_speed.motions(ship)
+    for row in rows:
+        froude = row.speed / np.sqrt(ship_speed.GRAVITY * ship.length)
+        text = []
+        for place in range(2):
+            cells = [f"{pair[place]:.3f}" for pair in row.found]
+            text.append(
+                f"{row.table[place]:5.3f}  {'  '.join(cells)}  {row.zero_speed_loads[place]:.3f}"
+            )
+        print(f"{froude:.3f}  {row.ratio:8.2f}  {'      '.join(text)}")
+    for place, axis in enumerate(("heave", "pitch")):
+        words = []
+        for number, method in enumerate(ship_speed.METHODS):
+            worst = max(abs(row.found[number][place] - 1.0) for row in rows)
+            words.append(f"{method} {100 * worst:.1f} %")
+        worst = max(abs(row.zero_speed_loads[place] - 1.0) for row in rows)
+        print(
+            f"largest difference in {axis}: {', '.join(words)}, loads at zero speed "
+            f"{100 * worst:.1f} %"
+        )
 
 
 def print_righting_arms() -> None:
@@ -330,7 +373,9 @@ def main() -> None:
     """Print all comparisons."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, default=WORK, help="working folder")
-    folder = parser.parse_args().work
+    parser.add_argument("--mss", type=Path, help="folder of the MSS toolbox")
+    given = parser.parse_args()
+    folder = given.work
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
     print_righting_arms()
     if has_capytaine:
@@ -342,6 +387,10 @@ def main() -> None:
         print_wigley_speed(folder)
     else:
         print("hulls by boundary elements: skipped, Capytaine is not installed")
+    if given.mss is not None and (given.mss / ship_speed.TABLE).is_file():
+        print_ship_speed(given.mss)
+    else:
+        print("container ship at forward speed: skipped, --mss names the folder of the MSS toolbox")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():
