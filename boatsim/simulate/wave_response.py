@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil, cos, pi, sqrt
+from math import ceil, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -249,8 +249,10 @@ def _encounter_frequency(vessel: Vessel, period: float, direction: float, speed:
     frequency = 2.0 * pi / period
     if speed == 0.0:
         return frequency
-    number = float(wave_field(vessel.effects).wave_number[0])
-    return frequency - number * speed * cos(direction)
+    field = wave_field(vessel.effects)
+    north, east = field.water_velocity  # the waves travel on the water
+    along = (speed - north) * cos(direction) - east * sin(direction)
+    return frequency - float(field.wave_number[0]) * along
 
 
 def _on_springs(vessel: Vessel, frequency: float, speed: float) -> Vessel:

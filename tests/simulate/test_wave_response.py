@@ -107,7 +107,7 @@ def test_responses_at_speed_are_those_of_the_frequency_domain(terms: bool, tmp_p
 
 
 def test_without_speed_through_the_waves_there_is_no_response() -> None:
-    """A boat as fast as the waves meets none of them, a faster one meets them from ahead."""
+    """A boat as fast as the waves meets none of them."""
     boat = load_vessel("otter")
     period = 2.0
     speed = 9.81 * period / (2.0 * np.pi)  # of the waves
