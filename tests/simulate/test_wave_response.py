@@ -106,6 +106,25 @@ def test_responses_at_speed_are_those_of_the_frequency_domain(terms: bool, tmp_p
     assert abs(other[2] / found.operators[0, 1, 2] - 1.0) > 0.05  # which can tell both apart
 
 
+def test_the_speed_through_the_water_counts_not_that_over_ground(tmp_path: Path) -> None:
+    catamaran = FloatingCatamaran()
+    dof = ("surge", "sway", "heave", "pitch")
+    boat = catamaran.vessel(tmp_path / "catamaran", dof).without_effect("ground_spring")
+    effects = []
+    for effect in boat.effects:
+        if isinstance(effect, RadiationMemory):
+            effect = replace(effect, forward_speed=1.0)
+        effects.append(effect)
+    boat = replace(boat, effects=tuple(effects))
+    against = boat.with_effect({"use": "current", "north": -0.4, "east": 0.0})
+    still = wave_response(boat, [np.pi], [1.8], 0.002, speed=0.9)
+    carried = wave_response(against, [np.pi], [1.8], 0.002, speed=0.5)
+    assert still.steady.all() and carried.steady.all()
+    assert carried.operators[0, 0, 2:] == pytest.approx(still.operators[0, 0, 2:], rel=0.01)
+    slower = wave_response(boat, [np.pi], [1.8], 0.002, speed=0.5)
+    assert abs(slower.operators[0, 0, 3] / still.operators[0, 0, 3] - 1.0) > 0.05
+
+
 def test_without_speed_through_the_waves_there_is_no_response() -> None:
     """A boat as fast as the waves meets none of them."""
     boat = load_vessel("otter")
