@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.errors import BadInput
+from boatsim.hydrodynamics.rao_csv import read_rao_csv
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.effects.radiation_memory import RadiationMemory
 from boatsim.physics.particulars import GRAVITY
@@ -181,6 +182,23 @@ def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
     assert invoked(*one, "--waves", "strip_wave_loads")[0] == 0
     figure = (tmp_path / "out" / "response.svg").read_text(encoding="utf-8")
     assert figure.startswith("<svg") and "pitch [rad/m]" in figure and "(from port)" in figure
+
+
+def test_a_table_at_speed_states_it_for_those_who_read_it(tmp_path: Path) -> None:
+    words = ["response", "--vessel", "otter", "--speed", "0.5", "--periods", "2,2.5,3"]
+    waves = ["--waves", "strip_wave_loads,hull_spacing=0.79,hull_beam=0.25"]
+    code, printed = invoked(*words, *waves, "--out", str(tmp_path / "out"))
+    assert code == 0 and "at 0.5 m/s, held by soft springs" in printed
+    table = read_rao_csv(tmp_path / "out" / "response.csv", 0.0)
+    assert table.speed == 0.5 and table.kind == "motion"
+    figure = (tmp_path / "out" / "response.svg").read_text(encoding="utf-8")
+    assert "at 0.5 m/s" in figure
+
+
+def test_a_vessel_that_is_held_in_surge_has_no_speed(tmp_path: Path) -> None:
+    boat = FloatingCatamaran().vessel(tmp_path / "catamaran", ("heave", "roll", "pitch"))
+    with pytest.raises(BadInput, match="not free in surge; --speed is allowed for vessels that"):
+        wave_response(boat, [np.pi], [2.0], 0.002, speed=1.0)
 
 
 @pytest.mark.parametrize(
