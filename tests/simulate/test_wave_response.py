@@ -184,6 +184,7 @@ def test_the_command_writes_a_table_and_a_figure(tmp_path: Path) -> None:
     assert figure.startswith("<svg") and "pitch [rad/m]" in figure and "(from port)" in figure
 
 
+@pytest.mark.slow
 def test_a_table_at_speed_states_it_for_those_who_read_it(tmp_path: Path) -> None:
     words = ["response", "--vessel", "otter", "--speed", "0.5", "--periods", "2,2.5,3"]
     waves = ["--waves", "strip_wave_loads,hull_spacing=0.79,hull_beam=0.25"]
