@@ -65,7 +65,7 @@ def read_ship(mss: Path) -> Ship:
 
     path = mss / TABLE
     vessel: Any = loadmat(path, squeeze_me=True, struct_as_record=False)["vessel"]
-    tables = [np.moveaxis(np.asarray(one, dtype=float), 2, 0) for one in (vessel.A, vessel.B)]
+    added, damping = (np.moveaxis(np.asarray(one, float), 2, 0) for one in (vessel.A, vessel.B))
     return Ship(
         path,
         float(vessel.main.Lpp),
@@ -73,7 +73,8 @@ def read_ship(mss: Path) -> Ship:
         np.asarray(vessel.MRB, dtype=float),
         np.asarray(vessel.freqs, dtype=float),
         np.asarray(vessel.velocities, dtype=float),
-        *tables,
+        added,
+        damping,
         np.asarray(vessel.C[:, :, 0, 0], dtype=float),
     )
 
@@ -235,4 +236,4 @@ def _response(dynamic: Array, force: Array, centre: float) -> Array:
     """Size (2,) of heave and pitch at the mass centre under a force there."""
     about_origin = np.array([force[0], force[1] - centre * force[0]])
     heave, pitch = np.linalg.solve(dynamic, about_origin)
-    return np.abs(np.array([heave - centre * pitch, pitch]))
+    return np.asarray(np.abs(np.array([heave - centre * pitch, pitch])))

@@ -18,6 +18,7 @@ from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
 from boatsim.physics.base import Array
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
+from validation.waves.ship_speed import METHODS, radiation
 from validation.waves.wigley import (
     DENSITY,
     DRAUGHT,
@@ -65,7 +66,6 @@ MOTIONS = (
 # Lowest and highest frequency of the table of coefficients [rad/s], and their number
 LOWEST, HIGHEST, NUMBER = 2.0, 9.0, 22
 POINTS = 60  # of Gauss and Legendre's quadrature over half the length and over the draught
-METHODS = ("none", "body axes", "forward speed")
 
 
 class Wave(NamedTuple):
@@ -129,8 +129,8 @@ class SlowTable:
         self.body = rigid_body(self.mass, (0.0, depth), inertia)[own]
         self._infinite = found.infinite_added_mass[own]
         w = found.frequency
-        self._added = CubicSpline(w, found.added_mass[(slice(None), *own)])
-        self._damping = CubicSpline(w, found.damping[(slice(None), *own)])
+        self._added = CubicSpline(w, found.added_mass[:, *own])
+        self._damping = CubicSpline(w, found.damping[:, *own])
         self._excitation = CubicSpline(w, found.excitation[:, 0, [HEAVE, PITCH]])
 
     def radiation(self, w: float, speed: float, method: str) -> Array:
@@ -141,18 +141,7 @@ class SlowTable:
             speed: Forward speed [m/s].
             method: One of `METHODS`.
         """
-        zero_speed = self._damping(w) + 1j * w * self._added(w)
-        motion = 1j * w * np.eye(2)
-        if method == "none":
-            return np.asarray(zero_speed @ motion)
-        velocity = motion.copy()
-        velocity[0, 1] += speed  # a pitched hull moves downward in its own axes
-        force = zero_speed @ velocity
-        momentum = self._infinite @ velocity
-        if method == "forward speed":
-            momentum = force / (1j * w)
-        force[1] -= speed * momentum[0]
-        return np.asarray(force)
+        return radiation(self._added(w), self._damping(w), self._infinite, w, speed, method)
 
     def excitation(self, wave: Wave, diffraction: bool = False) -> Array:
         """Return the complex excitation (2,) in heave and pitch per amplitude [N/m, N].
@@ -177,7 +166,7 @@ class SlowTable:
         """
         w = wave.encounter
         dynamic = self.stiffness - w * w * self.body + self.radiation(w, wave.speed, method)
-        return np.linalg.solve(dynamic, self.excitation(wave, diffraction))
+        return np.asarray(np.linalg.solve(dynamic, self.excitation(wave, diffraction)))
 
 
 def undisturbed_heave(number: float) -> float:
