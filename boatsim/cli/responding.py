@@ -28,6 +28,7 @@ PERIODS = 16  # number of usual periods
 LARGEST_ANGLE = (-360.0, 360.0)  # [deg] of a direction
 WAVE_PERIODS = (0.2, 40.0)  # [s] of the modal period of a sea
 HEIGHT_SHARE = 0.01  # of the length: so low that the response is linear
+FASTEST = 50.0  # [m/s] highest speed of the springs
 NOTHING = 1e-9  # [m/m, rad/m] rounding errors
 TURNING = ("roll", "pitch", "yaw")
 
@@ -40,6 +41,7 @@ def print_response(
     height: float | None,
     waves: str | None,
     out: Path | None,
+    speed: float = 0.0,
 ) -> int:
     """Simulate a vessel in regular waves, print its largest responses and write all of them.
 
@@ -51,6 +53,7 @@ def print_response(
         height: Height of the waves [m]; None for a hundredth of the length.
         waves: Effect by which waves act, "NAME,KEY=VALUE,..."; None for that of the vessel.
         out: Output folder; None for out/VESSEL_response.
+        speed: Forward speed [m/s].
 
     Returns:
         Exit code.
@@ -58,6 +61,8 @@ def print_response(
     Raises:
         BadInput: An argument is wrong, or the waves exert no force on the vessel.
     """
+    if not 0.0 <= speed <= FASTEST:
+        raise BadInput(f"--speed {speed:g}: allowed is a number from 0 to {FASTEST:g} m/s")
     boat = load_vessel(vessel, loads)
     angles: tuple[float, ...] = DIRECTIONS
     if directions is not None:
@@ -77,6 +82,7 @@ def print_response(
                 high,
                 table,
                 lambda share: progress("simulating regular waves", share, ""),
+                speed,
             )
         _write_csv(found, new / CSV)
         (new / SVG).write_text(_plot(found, boat.length), encoding="utf-8")
@@ -138,8 +144,9 @@ def _print_largest(found: WaveResponse) -> None:
             rows.append([f"{axis} [{_unit(axis)}]", *row])
     head = ["freedom", "largest response", "period [s]", "waves run to [deg]"]
     print_text_table(f"{found.vessel} in regular waves of {found.height:g} m", head, rows, 1)
+    speed = f"{found.speed:g} m/s" if found.speed else "zero speed"
     lines = [
-        "Motion per amplitude of the waves at zero speed, held by soft springs.",
+        f"Motion per amplitude of the waves at {speed}, held by soft springs.",
         "Directions are relative to the bow: 0 deg for waves from astern, 180 deg from ahead.",
     ]
     unsteady = ~found.steady
@@ -149,6 +156,7 @@ def _print_largest(found: WaveResponse) -> None:
             f"{unsteady.sum()} of {unsteady.size} responses did not become steady and are not "
             f"shown, at periods from {late.min():.3g} to {late.max():.3g} s: motion that is hardly "
             "damped, or a drift of the vessel in the waves"
+            + (", or waves that run with it" if found.speed else "")
         )
     print_lines(lines)
 
@@ -160,6 +168,8 @@ def _write_csv(found: WaveResponse, path: Path) -> None:
         unit = _unit(axis).replace("/", "_per_")
         head += [f"{axis}_{unit}", f"{axis}_phase_rad"]
     with path.open("w", newline="", encoding="utf-8") as file:
+        if found.speed:
+            file.write(f"# speed = {found.speed:g}\r\n")
         writer = csv.writer(file)
         writer.writerow(head)
         for i, direction in enumerate(found.directions.tolist()):
@@ -172,8 +182,11 @@ def _write_csv(found: WaveResponse, path: Path) -> None:
 
 def _plot(found: WaveResponse, length: float) -> str:
     """Figure of all responses over the length of the waves in deep water."""
+    title = f"{found.vessel}: response to regular waves of {found.height:g} m"
+    if found.speed:
+        title += f" at {found.speed:g} m/s"
     return response_plot(
-        f"{found.vessel}: response to regular waves of {found.height:g} m",
+        title,
         [f"{axis} [{_unit(axis)}]" for axis in found.dof],
         "wavelength over length of the vessel",
         deep_water_length(found.periods) / length,

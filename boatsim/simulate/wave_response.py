@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import pi
+from math import ceil, cos, pi, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from boatsim.physics.vessel.effect_tables import effect_table
 from boatsim.physics.vessel.wave_field import wave_field
 from boatsim.physics.waves.sea_parameters import SeaParameters
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.stepper import State
 from boatsim.simulate.vessel_model import planar_mass
 
 STEPS = 100  # integration steps in a period of the waves
@@ -28,6 +30,12 @@ MOST_FITS = 40  # 400 periods: a roll damped by 1 % of the critical damping has 
 # Frequency of the springs that hold place and heading, as a share of that of the waves: they change
 # the response by its square, 0.25 %
 SPRING_SHARE = 0.05
+# [sqrt(L / g)] in calm water after which the waves of the start have left a boat, in steps of a
+# thirtieth, as short as those in waves of a length
+SETTLING, SETTLING_STEPS = 40.0, 30
+# Frequency of encounter, as a share of that of the waves, below which there is no response: a boat
+# that runs with the waves is steered and accelerated by each of them, and does not oscillate
+LEAST_ENCOUNTER = 0.1
 # What regular waves state themselves, of the parameters of a sea
 STATED = (
     *("spectrum", "spectrum_file", "significant_height", "modal_period", "toward", "spreading"),
@@ -52,8 +60,10 @@ class WaveResponse:
         periods: Periods of the waves (P,) [s].
         height: Height of the waves [m].
         operators: Complex motion (H, P, D) per amplitude of the wave at the mean place, in m/m and
-            rad/m; nan where it did not become steady.
+            rad/m, for the time dependence exp(i w_e t) with the frequency of encounter w_e; nan
+            where it did not become steady.
         steady: Whether each response became steady (H, P).
+        speed: Forward speed [m/s].
     """
 
     vessel: str
@@ -63,6 +73,7 @@ class WaveResponse:
     height: float
     operators: Complex
     steady: NDArray[np.bool_]
+    speed: float = 0.0
 
 
 def wave_response(
@@ -72,11 +83,13 @@ def wave_response(
     height: float,
     waves: Mapping[str, object] | None = None,
     report: Report | None = None,
+    speed: float = 0.0,
 ) -> WaveResponse:
-    """Return the response of a vessel at rest to regular waves, by simulation.
+    """Return the response of a vessel to regular waves, by simulation.
 
-    Soft springs hold place and heading. The motion is fitted by a harmonic at the frequency of the
-    waves, until it is steady.
+    Soft springs hold place and heading. At forward speed they move ahead with it, and a constant
+    force takes the place of the propulsion. The motion is fitted by a harmonic at the frequency of
+    encounter, until it is steady.
 
     Args:
         vessel: The vessel.
@@ -86,11 +99,17 @@ def wave_response(
         waves: Table of the effect by which waves act; None for that of the vessel, or
             `strip_wave_loads` without one.
         report: Receives the share that is done.
+        speed: Forward speed [m/s].
 
     Raises:
-        BadInput: The effect does not exist or does not fit, or exerts no force.
+        BadInput: The effect does not exist or does not fit, or exerts no force, or the vessel
+            cannot have the speed.
     """
     own, table = _without_waves(vessel, waves)
+    start = State()
+    if speed != 0.0:
+        own = _towed(own, speed)
+        start = _towed_start(own, speed)
     shape = (len(directions), len(periods))
     operators = np.zeros((*shape, len(own.dof)), dtype=np.complex128)
     steady = np.zeros(shape, dtype=bool)
@@ -105,10 +124,15 @@ def wave_response(
             "spreading": 0.0,
             "random_amplitudes": 0.0,
         }
-        floating = _on_springs(own.with_effect(sea), 2.0 * pi / periods[k])
-        if not wave_axes(floating):
+        boat = own.with_effect(sea)
+        if not wave_axes(boat):
             raise BadInput(f"{vessel.name}: the waves of {table['use']} exert no force on it")
-        operators[i, k], steady[i, k] = _response(floating, periods[k])
+        encounter = _encounter_frequency(boat, periods[k], directions[i], speed)
+        operators[i, k] = np.nan
+        if abs(encounter) >= LEAST_ENCOUNTER * 2.0 * pi / periods[k]:
+            floating = _on_springs(boat, abs(encounter), speed)
+            run = _Towing(periods[k], encounter, speed, start)
+            operators[i, k], steady[i, k] = _response(floating, run)
         if report:
             report((number + 1) / steady.size)
     return WaveResponse(
@@ -119,6 +143,7 @@ def wave_response(
         height,
         operators,
         steady,
+        speed,
     )
 
 
@@ -171,33 +196,124 @@ def check_waves(table: Mapping[str, object]) -> None:
             raise BadInput(f"{use}: {key} does not apply to the regular waves of a response")
 
 
-def _on_springs(vessel: Vessel, frequency: float) -> Vessel:
-    """A vessel on soft springs in its horizontal degrees of freedom."""
+def _towed(vessel: Vessel, speed: float) -> Vessel:
+    """A vessel with a constant force that balances its resistance in calm water at a speed."""
+    if "surge" not in vessel.dof:
+        raise BadInput(
+            f"{vessel.name} is not free in surge; --speed is allowed for vessels that are"
+        )
+    engine = OpenWater(vessel)
+    engine.reset(State(u=speed))
+    tow = {"use": "push", "name": "tow", "surge": -engine.wrench().X}
+    return vessel.with_effect(tow)
+
+
+def _towed_start(vessel: Vessel, speed: float) -> State:
+    """State from which a towed vessel reaches a speed and the place of its springs in calm water.
+
+    The force of the waves that it radiates at the start changes its speed and place for good where
+    nothing damps surge. Both changes are linear in the speed at the start.
+
+    Args:
+        vessel: The vessel with the force that tows it.
+        speed: The speed [m/s].
+
+    Raises:
+        BadInput: It does not stay near the speed.
+    """
+    unit = sqrt(vessel.length / GRAVITY)
+    engine = OpenWater(vessel, step=unit / SETTLING_STEPS)
+    begin = speed
+    for _ in range(2):
+        engine.reset(State(u=begin))
+        engine.advance(round(SETTLING * SETTLING_STEPS))
+        end = engine.state
+        if not 0.5 * speed < end.u < 2.0 * speed:
+            raise BadInput(
+                f"{vessel.name}: its speed does not stay at --speed = {speed:g} m/s under a "
+                f"constant force; it reaches {end.u:.4g} m/s"
+            )
+        first, begin = begin, begin * speed / end.u
+    return State(x=speed * end.t - end.x, z=end.z, theta=end.theta, u=first)
+
+
+def _encounter_frequency(vessel: Vessel, period: float, direction: float, speed: float) -> float:
+    """Frequency at which a vessel meets its regular waves [rad/s]; negative if it overtakes them.
+
+    Args:
+        vessel: The vessel with its waves.
+        period: Period of the waves [s].
+        direction: Direction to which they run, relative to the bow [rad].
+        speed: Forward speed [m/s].
+    """
+    frequency = 2.0 * pi / period
+    if speed == 0.0:
+        return frequency
+    field = wave_field(vessel.effects)
+    north, east = field.water_velocity  # the waves travel on the water
+    along = (speed - north) * cos(direction) - east * sin(direction)
+    return frequency - float(field.wave_number[0]) * along
+
+
+def _on_springs(vessel: Vessel, frequency: float, speed: float) -> Vessel:
+    """A vessel on soft springs in its horizontal degrees of freedom, which move with a speed."""
     mass = planar_mass(vessel)
     spring: dict[str, object] = {"use": "ground_spring", "name": "station_spring"}
     for i, (axis, key) in enumerate(SPRINGS.items()):
         if axis in vessel.dof:
             spring[key] = float(mass[i, i]) * (SPRING_SHARE * frequency) ** 2
-    return vessel.with_effect(spring) if len(spring) > 2 else vessel
+    if len(spring) == 2:
+        return vessel
+    if speed != 0.0:
+        spring["velocity_north"] = speed
+    return vessel.with_effect(spring)
 
 
-def _response(vessel: Vessel, period: float) -> tuple[Complex, bool]:
-    """Complex motion per amplitude of the wave (D,), and whether it is steady."""
-    engine = OpenWater(vessel, step=period / STEPS)
-    engine.reset()
+class _Towing(NamedTuple):
+    """Waves of a run, and speed and state of the vessel at its start."""
+
+    period: float  # [s] of the waves
+    encounter: float  # [rad/s] frequency of encounter
+    speed: float  # [m/s]
+    start: State
+
+
+def _response(vessel: Vessel, run: _Towing) -> tuple[Complex, bool]:
+    """Complex motion per amplitude of the wave (D,), and whether it is steady.
+
+    Args:
+        vessel: The vessel on its springs.
+        run: The run.
+    """
+    speed, met = run.speed, run.period
+    if speed != 0.0:
+        met = 2.0 * pi / abs(run.encounter)
+    # a step is a hundredth of the shorter one of both periods
+    substeps = STEPS // SAMPLES * ceil(met / run.period - 1e-9)
+    engine = OpenWater(vessel, step=met / (SAMPLES * substeps))
+    engine.reset(run.start)
     field = wave_field(vessel.effects)
     names = [COLUMNS[axis] for axis in vessel.dof]
     before = np.full(len(names), np.inf + 0j)
     for _ in range(MOST_FITS):
         rows = []
         for _ in range(FITTED * SAMPLES):
-            engine.advance(STEPS // SAMPLES)
+            engine.advance(substeps)
             state = engine.state
             rows.append([state.t, state.x, state.y, *(getattr(state, name) for name in names)])
         table = np.array(rows)
-        t, x, y = table[:, 0], float(table[:, 1].mean()), float(table[:, 2].mean())
-        elevation = [float(field.elevation(x, y, at)) for at in t]  # at the mean place
-        harmonics = _harmonics(t, np.column_stack([elevation, table[:, 3:]]), 2.0 * pi / period)
+        t, carried = table[:, 0], speed * table[:, 0]
+        weights = None
+        if speed != 0.0:  # the start of towing leaves a slow motion on the springs
+            weights = _window(t)
+        x = float(np.average(table[:, 1] - carried, weights=weights))
+        y = float(np.average(table[:, 2], weights=weights))
+        elevation = []  # at the mean place, which moves ahead with the speed
+        for at, ahead in zip(t, carried, strict=True):
+            elevation.append(float(field.elevation(x + ahead, y, at)))
+        if "x" in names:
+            table[:, 3 + names.index("x")] -= carried
+        harmonics = _harmonics(t, np.column_stack([elevation, table[:, 3:]]), run.encounter)
         found = harmonics[1:] / harmonics[0]
         scale = np.abs(found).max()
         if np.abs(found - before).max() <= STEADY * scale:
@@ -214,9 +330,14 @@ def _harmonics(t: Array, signals: Array, frequency: float) -> Complex:
     swing = SPRING_SHARE * frequency * t
     waves = [np.cos(frequency * t), np.sin(frequency * t)]
     basis = np.column_stack([*waves, np.cos(swing), np.sin(swing), *slow])
-    weight = np.sin(pi * share)[:, None] ** 2
+    weight = _window(t)[:, None]
     cosine, sine = np.linalg.lstsq(weight * basis, weight * signals, rcond=None)[0][:2]
     return np.asarray(cosine - 1j * sine)
+
+
+def _window(t: Array) -> Array:
+    """Hann window (N,) over times (N,) [s]."""
+    return np.asarray(np.sin(pi * (t - t[0]) / (t[-1] - t[0])) ** 2)
 
 
 def usual_periods(length: float, count: int) -> Array:

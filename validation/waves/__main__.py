@@ -17,8 +17,10 @@ from validation.waves import (
     response,
     righting_arms,
     section,
+    ship_speed,
     wigley,
     wigley_pitch,
+    wigley_speed,
 )
 
 WORK = Path("out/validation/waves")
@@ -134,6 +136,117 @@ def print_wigley_pitch(folder: Path) -> None:
         counts.append(f"{name} {wigley_pitch.rows_within(every, name)}")
     known = sum(not np.isnan(row.measured) for row in every)
     print(f"within 10 % of the measured pitch, of {known} waves: {', '.join(counts)}")
+
+
+def print_wigley_speed(folder: Path) -> None:
+    """Print measured and computed heave, damping and loads of a Wigley hull at forward speed."""
+    table = wigley_speed.SlowTable(folder)
+    print(
+        "\nWigley hull III in head waves at forward speed, from coefficients at zero speed, against"
+    )
+    print(
+        "model tests (J. M. J. Journee, report 909, 1992, tables 2-III, 6-III and 8-III); none: no"
+    )
+    print("effect of speed but the frequency of encounter; body axes: equations of motion in body")
+    print(
+        "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
+    )
+    print("the diffraction at forward speed too, which panel_wave_loads leaves out")
+    print("  Fn  wave / L  heave   none          body axes     forward speed  diffraction")
+    rows = wigley_speed.heave_at_speed(table)
+    errors: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        cells = []
+        values = dict(zip(wigley_speed.METHODS, row.found, strict=True))
+        for name, found in (values | {"diffraction": row.diffraction}).items():
+            errors.setdefault(name, []).append((row.measured, found))
+            cells.append(f"{found:.3f} {100 * (found / row.measured - 1):+4.0f} %")
+        print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {row.measured:5.2f}  {'  '.join(cells)}")
+    words = [f"{name} {100 * wigley_speed.mean_error(own):.1f} %" for name, own in errors.items()]
+    print(f"mean error of heave: {', '.join(words)}")
+    print("pitch over 2 pi / L times the amplitude, of which no measured value is at hand")
+    for row in rows:
+        values = dict(zip(wigley_speed.METHODS, row.pitch, strict=True))
+        text = ", ".join(f"{name} {found:.3f}" for name, found in values.items())
+        print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {text}")
+    print("held hull at Fn 0.3, force over C33 a and moment over k C55 a")
+    print("wave / L  force  zero speed    moment  zero speed    diffraction")
+    loads = wigley_speed.wave_loads(table)
+    for load in loads:
+        force, moment = load.measured
+        own = load.zero_speed[0]
+        cells = [f"{force:.3f}  {own:.3f} {100 * (own / force - 1):+4.0f} %"]
+        cells.append(f" {moment:.3f}")
+        for pair in (load.zero_speed, load.diffraction):
+            cells.append(f"{pair[1]:.3f} {100 * (pair[1] / moment - 1):+4.0f} %")
+        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
+    before = [(load.measured[1], load.zero_speed[1]) for load in loads]
+    after = [(load.measured[1], load.diffraction[1]) for load in loads]
+    print(
+        f"mean error of the moment: zero speed {100 * wigley_speed.mean_error(before):.1f} %, "
+        f"diffraction {100 * wigley_speed.mean_error(after):.1f} %"
+    )
+    print("forced heave at Fn 0.3, on which strip theory has no effect of speed")
+    print("w sqrt(L / g)  A33 / rho V               B33 sqrt(L / g) / rho V")
+    for one in wigley_speed.forced_heave(table):
+        cells = []
+        for measured, found in (one.added_mass, one.damping):
+            cells.append(f"{measured:.3f}  {found:.3f} {100 * (found / measured - 1):+4.0f} %")
+        print(f"{one.frequency:13.2f}  {'      '.join(cells)}")
+    print(
+        f"forced pitch, B55 sqrt(L / g) / (rho V L^2) at w sqrt(L / g) = "
+        f"{wigley_speed.FORCED_PITCH_AT:g}"
+    )
+    for froude, measured, found in wigley_speed.pitch_damping(table):
+        values = dict(zip(wigley_speed.METHODS, found, strict=True))
+        text = ", ".join(
+            f"{name} {value:.3f} ({100 * (value / measured - 1):+.0f} %)"
+            for name, value in values.items()
+        )
+        print(f"Fn {froude:.1f}  measured {measured:.3f}, {text}")
+
+
+def print_ship_speed(mss: Path) -> None:
+    """Print coefficients and motions of a ship at forward speed next to those of VERES."""
+    ship = ship_speed.read_ship(mss)
+    print("\nContainer ship S-175 of the MSS toolbox, strip theory by VERES 4.02 at five speeds:")
+    print("largest error of added mass and damping at speed over the largest of the axes [%], from")
+    print("those at zero speed with the terms of forward speed and without")
+    print("Fn    with: heave, pitch  sway, roll, yaw   without: heave, pitch  sway, roll, yaw")
+    for speed, *errors in ship_speed.coefficient_errors(ship):
+        froude = speed / np.sqrt(ship_speed.GRAVITY * ship.length)
+        first, second, third, fourth = (100.0 * error for error in errors)
+        print(f"{froude:.3f} {first:19.2f} {second:16.2f} {third:23.1f} {fourth:16.1f}")
+    print(
+        "motion in head waves over that of VERES, with its loads at the speed; none: no effect of"
+    )
+    print(
+        "speed but the frequency of encounter; body: equations of motion in body axes; terms: with"
+    )
+    print("the terms of forward speed; loads: these with its loads at zero speed")
+    print(
+        "Fn     wave / L  heave  none   body   terms  loads      pitch  none   body   terms  loads"
+    )
+    rows = ship_speed.motions(ship)
+    for row in rows:
+        froude = row.speed / np.sqrt(ship_speed.GRAVITY * ship.length)
+        text = []
+        for place in range(2):
+            cells = [f"{pair[place]:.3f}" for pair in row.found]
+            text.append(
+                f"{row.table[place]:5.3f}  {'  '.join(cells)}  {row.zero_speed_loads[place]:.3f}"
+            )
+        print(f"{froude:.3f}  {row.ratio:8.2f}  {'      '.join(text)}")
+    for place, axis in enumerate(("heave", "pitch")):
+        words = []
+        for number, method in enumerate(ship_speed.METHODS):
+            worst = max(abs(row.found[number][place] - 1.0) for row in rows)
+            words.append(f"{method} {100 * worst:.1f} %")
+        worst = max(abs(row.zero_speed_loads[place] - 1.0) for row in rows)
+        print(
+            f"largest difference in {axis}: {', '.join(words)}, loads at zero speed "
+            f"{100 * worst:.1f} %"
+        )
 
 
 def print_righting_arms() -> None:
@@ -260,7 +373,9 @@ def main() -> None:
     """Print all comparisons."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, default=WORK, help="working folder")
-    folder = parser.parse_args().work
+    parser.add_argument("--mss", type=Path, help="folder of the MSS toolbox")
+    given = parser.parse_args()
+    folder = given.work
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
     print_righting_arms()
     if has_capytaine:
@@ -269,8 +384,13 @@ def main() -> None:
         print_drift(folder)
         print_wigley(folder)
         print_wigley_pitch(folder)
+        print_wigley_speed(folder)
     else:
         print("hulls by boundary elements: skipped, Capytaine is not installed")
+    if given.mss is not None and (given.mss / ship_speed.TABLE).is_file():
+        print_ship_speed(given.mss)
+    else:
+        print("container ship at forward speed: skipped, --mss names the folder of the MSS toolbox")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():

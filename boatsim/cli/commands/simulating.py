@@ -451,7 +451,8 @@ def manoeuvre(
         ),
     ] = None,
     speed: Annotated[
-        float | None, typer.Option(min=1e-3, metavar="M/S", help="Approach speed.")
+        float | None,
+        typer.Option(min=1e-3, metavar="M/S", help="Approach speed, or forward speed in waves."),
     ] = None,
     directions: Annotated[
         str | None,
@@ -487,7 +488,7 @@ def manoeuvre(
     from boatsim.simulate.manoeuvre import manoeuvre_scenario
 
     sea = {"directions": directions, "periods": periods, "height": height, "waves": waves}
-    helm = {"angle": angle, "heading": heading, "speed": speed}
+    helm = {"angle": angle, "heading": heading}
     response = name == "response"
     for option, value in (helm if response else sea).items():
         if value is not None:
@@ -495,7 +496,7 @@ def manoeuvre(
     with trusted_content(content, trust, [vessel]):
         if response:
             return print_response(
-                vessel, split_loads(load), directions, periods, height, waves, out
+                vessel, split_loads(load), directions, periods, height, waves, out, speed or 0.0
             )
         scenario = manoeuvre_scenario(name, vessel, split_loads(load), angle, speed, heading)
         folder = out or Path("out") / f"{scenario.vessel.name}_{name}"

@@ -4,6 +4,9 @@ The table of the effect has the numbers of sections of both sets of axes (surge,
 sway, roll, yaw), then for each section b, a and the upper triangles of M and N. Each section has
 one oscillator x'' + a x' + b x = nu for each axis of its set, and the force M x' + N x. Between two
 steps the velocity is taken as linear in time, for which the steps of the oscillators are exact.
+
+The momentum of the memory is the integral of this force over time. As the sum of N / b over all
+sections is zero, it is a function of the same states, M x - N (x' + a x) / b.
 """
 
 from math import cos, exp, sin, sqrt
@@ -17,7 +20,8 @@ SECTION = 14  # floats of the table for each section
 HEAD = 8  # floats of the memory before the sections: last step, step of the factors, six velocities
 FACTORS = 16  # floats for each section that depend on the length of the step only
 OSCILLATORS = 6  # floats for each section: place and rate of its oscillators
-SIGNALS = 18  # floats of each row: six forces at rest, two symmetric matrices of force per velocity
+FORCES = 18  # floats of a row: six forces at rest, two symmetric matrices of force per velocity
+SIGNALS = 26  # and momentum of the memory in heave and sway: two at rest, six per velocity
 
 
 @njit
@@ -177,7 +181,7 @@ def advance_sections(
         first: Index of the effect's table.
     """
     for row in range(3):
-        for i in range(SIGNALS):
+        for i in range(FORCES):
             act[row * held + own + i] = 0.0
     last = memory[at]
     section = first + 2
@@ -213,3 +217,111 @@ def advance_sections(
             place = states + OSCILLATORS
     memory[at] = dt
     memory[at + 1] = dt
+
+
+@njit
+def add_momentum(
+    act: Array, row: Any, group: Any, p: Array, section: Any, places: Any, rates: Any
+) -> None:
+    """Add the momentum of one section, in heave or in sway, to a row.
+
+    Args:
+        act: Signals of the laws.
+        row: Index of the first signal of the row.
+        group: 0 for surge, heave and pitch, 1 for sway, roll and yaw.
+        p: Parameters and tables.
+        section: Index of the section in them.
+        places: Places of the section's three oscillators.
+        rates: Their rates.
+    """
+    b, a = p[section], p[section + 1]
+    # row of heave, the second axis of its set, or of sway, the first one, in an upper triangle
+    i, j, k = 1 - group, 3 - 2 * group, 4 - 2 * group
+    x, y, z = places[0], places[1], places[2]
+    act[row + FORCES + group] += (
+        p[section + 2 + i] * x
+        + p[section + 2 + j] * y
+        + p[section + 2 + k] * z
+        - p[section + 8 + i] * (rates[0] + a * x) / b
+        - p[section + 8 + j] * (rates[1] + a * y) / b
+        - p[section + 8 + k] * (rates[2] + a * z) / b
+    )
+
+
+@njit
+def add_momentum_row(
+    act: Array,
+    row: Any,
+    group: Any,
+    p: Array,
+    section: Any,
+    memory: Array,
+    factors: Any,
+    states: Any,
+    speeds: Any,
+) -> None:
+    """Add the momentum of one section in the middle or at the end of the coming step to a row.
+
+    It is a momentum for a velocity of zero there, and momentum per velocity of the three axes.
+
+    Args:
+        act: Signals of the laws.
+        row: Index of the first signal of the row.
+        group: 0 for surge, heave and pitch, 1 for sway, roll and yaw.
+        p: Parameters and tables.
+        section: Index of the section in them.
+        memory: States of all effects.
+        factors: Index of the factors of the step to this row.
+        states: Index of the section's oscillators.
+        speeds: Index of the three velocities at the begin of the step.
+    """
+    f1, f2, f3, f4 = memory[factors], memory[factors + 1], memory[factors + 2], memory[factors + 3]
+    g1, g2 = memory[factors + 4], memory[factors + 5]
+    x0, x1, x2 = memory[states], memory[states + 2], memory[states + 4]
+    v0, v1, v2 = memory[states + 1], memory[states + 3], memory[states + 5]
+    u0, u1, u2 = memory[speeds], memory[speeds + 1], memory[speeds + 2]
+    places = (f1 * x0 + f2 * v0 + g1 * u0, f1 * x1 + f2 * v1 + g1 * u1, f1 * x2 + f2 * v2 + g1 * u2)
+    rates = (f3 * x0 + f4 * v0 + g2 * u0, f3 * x1 + f4 * v1 + g2 * u1, f3 * x2 + f4 * v2 + g2 * u2)
+    add_momentum(act, row, group, p, section, places, rates)
+    level, rate = memory[factors + 6], memory[factors + 7]
+    held = (rate + p[section + 1] * level) / p[section]
+    first = row + FORCES + 2 + 3 * group
+    i, j, k = 1 - group, 3 - 2 * group, 4 - 2 * group
+    act[first] += level * p[section + 2 + i] - held * p[section + 8 + i]
+    act[first + 1] += level * p[section + 2 + j] - held * p[section + 8 + j]
+    act[first + 2] += level * p[section + 2 + k] - held * p[section + 8 + k]
+
+
+@njit
+def store_momentum(
+    act: Array, held: Any, own: Any, memory: Array, at: Any, p: Array, first: Any
+) -> None:
+    """Store the momentum of the memory in heave and sway for the step that begins.
+
+    `advance_sections` has advanced the oscillators to its begin.
+
+    Args:
+        act: Signals of the laws.
+        held: Number of signals in a row.
+        own: Index of the first signal of the effect.
+        memory: States of all effects.
+        at: Index of the first state of the effect.
+        p: Parameters and tables.
+        first: Index of the effect's table.
+    """
+    for row in range(3):
+        for i in range(FORCES, SIGNALS):
+            act[row * held + own + i] = 0.0
+    section = first + 2
+    place = at + HEAD
+    for group in range(2):
+        before = at + 2 + 3 * group
+        for _ in range(int(p[first + group])):
+            states = place + FACTORS
+            places = (memory[states], memory[states + 2], memory[states + 4])
+            rates = (memory[states + 1], memory[states + 3], memory[states + 5])
+            add_momentum(act, own, group, p, section, places, rates)
+            add_momentum_row(act, held + own, group, p, section, memory, place + 8, states, before)
+            add_momentum_row(act, 2 * held + own, group, p, section, memory, place, states, before)
+            section += SECTION
+            place = states + OSCILLATORS

@@ -11,7 +11,7 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Return the restoring force of springs or cables between the hull and a fixed point.
+    """Return the restoring force of springs or cables between the hull and a point of a rig.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -24,7 +24,8 @@ def law(m: Any, q: Any) -> Wrench:
     s, c = sin(m.phi), cos(m.phi)
     east = m.y - q.below * s * m.cos_psi
     north = m.x + q.below * s * m.sin_psi
-    toward_north = -q.stiffness_north * (north - q.place_north)
+    slack = q.place_north + q.velocity_north * m.t
+    toward_north = -q.stiffness_north * (north - slack)
     toward_east = -q.stiffness_east * (east - q.place_east)
     level = m.cos_psi * toward_east - m.sin_psi * toward_north
     down = -q.down * m.z
@@ -41,15 +42,16 @@ def law(m: Any, q: Any) -> Wrench:
 class GroundSpring(Force):
     """Springs, lines or cables of a rig between the hull and the ground, linear, axis by axis.
 
-    F_east = -k_E (y_P - y_0),  F_north = -k_N (x_P - x_0),  Z = -k_D z,  K = -k_phi phi,
+    F_east = -k_E (y_P - y_0),  F_north = -k_N (x_P - x_0 - V t),  Z = -k_D z,  K = -k_phi phi,
     N = -k_psi psi
 
     P is the point of attachment, `below` [m] the origin: the force to the side also heels the hull,
-    and heel strains the spring.
+    and heel strains the spring. A towing carriage moves to the north with `velocity_north`.
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} F_E &= -k_E \, (y - b \, \phi - y_0), \quad F_N = -k_N \, (x - x_0), "
+        r"\begin{aligned} F_E &= -k_E \, (y - b \, \phi - y_0), \quad F_N = -k_N \, (x - x_0 - V "
+        r"t), "
         r"\quad Z = -k_D \, z \\ K &= -b \, F_E - k_\phi \, \phi, \quad N = -k_\psi \, \psi "
         r"\end{aligned}"
     )
@@ -61,6 +63,7 @@ class GroundSpring(Force):
         "turn": r"k_\psi",
         "place_north": "x_0",
         "place_east": "y_0",
+        "velocity_north": "V",
         "below": "b",
     }
     required_facts: ClassVar = {"guided": True}
@@ -119,6 +122,13 @@ class GroundSpring(Force):
     )
     place_north: float = param(
         0.0, low=-1e6, high=1e6, unit="m", words="place to the north at which the spring is slack"
+    )
+    velocity_north: float = param(
+        0.0,
+        low=-50.0,
+        high=50.0,
+        unit="m/s",
+        words="velocity of the rig to the north, as of a towing carriage",
     )
     below: float = param(
         0.0,

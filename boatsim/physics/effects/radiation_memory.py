@@ -21,10 +21,12 @@ from boatsim.physics.base import (
 from boatsim.physics.coefficients.files import read_coefficients
 from boatsim.physics.coefficients.memory_step import (
     FACTORS,
+    FORCES,
     HEAD,
     OSCILLATORS,
     SIGNALS,
     advance_sections,
+    store_momentum,
 )
 from boatsim.physics.signals import MASS_ENTRIES
 
@@ -84,11 +86,16 @@ def remember_motion(
     """
     speeds = (m.ur, m.wr, m.q, m.vr, m.p, m.r)
     advance_sections(speeds, act, held, own, memory, at, dt, p, first)
+    if q.forward_speed != 0.0:
+        store_momentum(act, held, own, memory, at, p, first)
 
 
 @njit
 def law(m: Any, q: Any, act: Array, at: Any, own: Any, p: Array, first: Any) -> Wrench:
     """Return the force of the radiated waves, and the Coriolis force of the added mass.
+
+    With the terms of forward speed the momentum of the memory in heave and sway has a Coriolis
+    force too, as far as it contains the forward speed.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -117,6 +124,13 @@ def law(m: Any, q: Any, act: Array, at: Any, own: Any, p: Array, first: Any) -> 
     Y = act[f + 3] + act[g] * m.vr + act[g + 1] * m.p + act[g + 2] * m.r
     K = act[f + 4] + act[g + 1] * m.vr + act[g + 3] * m.p + act[g + 4] * m.r
     N = act[f + 5] + act[g + 2] * m.vr + act[g + 4] * m.p + act[g + 5] * m.r
+    if q.forward_speed != 0.0:
+        g = f + FORCES
+        heaved = act[g] + act[g + 2] * m.ur + act[g + 3] * m.wr + act[g + 4] * m.q
+        swayed = act[g + 1] + act[g + 5] * m.vr + act[g + 6] * m.p + act[g + 7] * m.r
+        X += q.forward_speed * (heaved * m.q - swayed * m.r)
+        M -= q.forward_speed * heaved * m.ur
+        N += q.forward_speed * swayed * m.ur
     return wrench(
         X=across * m.r - down * m.q - X,
         Y=down * m.p - along * m.r - Y,
@@ -155,11 +169,23 @@ class RadiationMemory(Inertia, MotionMemory):
     hydrodynamics` fits to them, K(s) = sum (s M + N) / (s^2 + a s + b). `coefficients` is the
     folder that this command writes, about the vessel's origin of motion. The effect replaces
     `added_mass`, and the part of `linear_damping` that is radiation of waves.
+
+    At forward speed the water that the hull has set in motion carries momentum along. That of A_inf
+    is part of the Coriolis force; `forward_speed` = f adds that of the memory in sway and heave,
+    lambda = integral of the memory's force mu over time:
+
+    X = f (lambda_2 r - lambda_3 q),  M = f u_r lambda_3,  N = -f u_r lambda_2
+
+    These terms exert no power in total. With f = 1 the equations contain the added mass and damping
+    at forward speed of the strip theory of Salvesen, Tuck and Faltinsen, for a hull without
+    transom.
     """
 
     formula: ClassVar[str] = (
         r"\begin{aligned} \tau &= -\mathbf{A}_\infty \dot{\nu_r} - c \, \mathbf{C}_A(\nu_r) "
-        r"\nu_r - \mu, \quad \mu = \int_0^t \mathbf{K}(t - s) \, \nu_r(s) \, \mathrm{d}s "
+        r"\nu_r - \mu + f \, \left(\lambda_2 r - \lambda_3 q, 0, 0, 0, u_r \lambda_3, -u_r "
+        r"\lambda_2\right) \\ \mu &= \int_0^t \mathbf{K}(t - s) \, \nu_r(s) \, \mathrm{d}s, "
+        r"\quad \lambda = \int_0^t \mu(s) \, \mathrm{d}s "
         r"\\ \mathbf{K}(\mathrm{i} \omega) &= \mathbf{B}(\omega) + \mathrm{i} \omega \left("
         r"\mathbf{A}(\omega) - \mathbf{A}_\infty\right) \approx \sum_k \frac{\mathrm{i} \omega "
         r"\mathbf{M}_k + \mathbf{N}_k}{b_k - \omega^2 + \mathrm{i} a_k \omega} \end{aligned}"
@@ -178,13 +204,18 @@ class RadiationMemory(Inertia, MotionMemory):
         "sway_yaw": r"A_{\infty,26}",
         "roll_yaw": r"A_{\infty,46}",
         "coriolis": "c",
+        "forward_speed": "f",
     }
     ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the waves that the hull radiates act on it later"
     shown_by: ClassVar[str] = "oscillations in heave, roll and pitch at several frequencies"
     source: ClassVar[str] = (
         "W. E. Cummins, The impulse response function and ship motions, Schiffstechnik 9, 1962; "
-        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 5.4"
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 5.4; "
+        "forward speed: N. Salvesen, E. O. Tuck and O. Faltinsen, Ship motions and sea loads, "
+        "Transactions of SNAME 78, 1970; T. Perez and T. I. Fossen, Kinematic models for "
+        "manoeuvring and seakeeping of marine vessels, Modeling, Identification and Control 28(1), "
+        "2007"
     )
     moves_with: ClassVar[str] = "water"
     memory_signals: ClassVar[int] = SIGNALS
@@ -208,6 +239,13 @@ class RadiationMemory(Inertia, MotionMemory):
     roll_yaw: float = entry_parameter("A_46", "kg m^2", -1e13)
     coriolis: float = param(
         1.0, low=-1.0, high=3.0, unit="", words="factor on the Coriolis force; 1: as the theory"
+    )
+    forward_speed: float = param(
+        0.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="factor on the memory's terms of forward speed; 1: as strip theory, 0: none",
     )
 
     def table(self) -> tuple[float, ...]:
