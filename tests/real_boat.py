@@ -28,6 +28,10 @@ LENGTH, DRAUGHT = 1.2, 0.07  # [m]
 WALLS = np.array([[-4.0, -3.0], [4.0, 3.0]])  # [m] of the tank: low and high, along x and y
 SECTION = LENGTH / 60  # [m] length of a section of the hull
 PLACES = SECTION * (np.arange(60) + 0.5) - 0.5 * LENGTH  # [m] of the sections, ahead of the middle
+ANGLES = np.linspace(0.0, 2.0 * pi, 73)[:-1]  # around a hull that is fuller than an ellipse
+OUTLINE = np.array([[0.6], [0.22]]) * [
+    np.sign(trace(ANGLES)) * abs(trace(ANGLES)) ** 0.9 for trace in (np.cos, np.sin)
+]
 MAST = 0.5  # [m] height of an antenna
 USUAL = np.array(
     [0.25, 0.05, 0.35]
@@ -96,6 +100,7 @@ class Real:
         0.0,
         0.0,
     )  # [N/m], [m] length, [m] anchor north, east
+    quay: tuple[float, float] = (0.0, 0.0)  # [N/m] of a fender, [m] its place to the east
     walls: tuple[float, float] = (
         0.0,
         0.0,
@@ -224,9 +229,18 @@ def damped(nu: Array, real: Real) -> Array:
 
 
 def held(y: Array, c: float, s: float, real: Real) -> Array:
-    """What is fixed to the ground: a line from the stern to its anchor, and walls that brake and
-    draw the boat."""
+    """What is fixed to the ground: a line from the stern to its anchor, a quay with a fender, and
+    walls that brake and draw the boat."""
     force = np.zeros(3)
+    fender, place = real.quay
+    if fender:
+        east = y[1] + OUTLINE[0] * s + OUTLINE[1] * c
+        i = int(np.argmax(east))
+        px, py = OUTLINE[:, i]
+        depth = max(float(east[i]) - place, 0.0)
+        into = s * (y[3] - y[5] * py) + c * (y[4] + y[5] * px)
+        push = -fender * depth * (0.9 + depth) * (1.0 + max(into, -0.5))
+        force += [s * push, c * push, px * c * push - py * s * push]
     stiffness, length, north, east = real.line
     if stiffness:
         reach = np.array([north - y[0] - STERN * c, east - y[1] - STERN * s])

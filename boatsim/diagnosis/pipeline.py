@@ -58,14 +58,13 @@ from boatsim.diagnosis.recalibration import (
     predicts_worse,
 )
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
-from boatsim.diagnosis.search.evidence import log_evidence_gains
 from boatsim.diagnosis.search.ranking import (
     Baseline,
     Ranking,
     fit_baseline,
     select_and_rank_candidates,
 )
-from boatsim.diagnosis.search.screening import screen
+from boatsim.diagnosis.search.screening import largest_gain_on_top
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.residual_description import (
     describe_residual_force as describe_residual,
@@ -482,7 +481,8 @@ def try_last_candidates(
     """Select again with candidates that are tried last, where these may explain what is left.
 
     They are tried where a force stays unexplained, or where an effect was selected that they are
-    confounded with, and if they alone gain `select.last_gain`.
+    confounded with, and if one of them gains `select.last_gain`
+    on top of what was selected.
 
     Args:
         loaded: Recordings.
@@ -506,11 +506,10 @@ def try_last_candidates(
     again = set_up_estimation_problem(wider, config)
     report(f"trying {', '.join(last)}")
     compile_program(again.problem)
-    base = fit_baseline_models(again)
     tested = [name for name in last if name in again.candidates]
-    alone = log_evidence_gains(screen(again.problem, base.recalibrated, tested), base.recalibrated)
-    if max(alone.values(), default=0.0) < config.select.last_gain:
+    if largest_gain_on_top(again.problem, ranking.best, tested) < config.select.last_gain:
         return loaded, question, decision
+    base = fit_baseline_models(again)
     other = decide_causes(again, select_candidates(again, base, wider, report))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:

@@ -106,9 +106,9 @@ class SelectConfig:
     last_gain: float = setting(
         30.0,
         "nats",
-        "Evidence that a candidate that is tried last must gain alone, and with the others beyond "
-        "those found before it. It has several parameters and starts, so that it takes up some of "
-        "any force that acts near a place.",
+        "Evidence that a candidate that is tried last must gain on top of those found before it. "
+        "It has several parameters and starts, so that it takes up some of any force that acts "
+        "near a place.",
         low=0.0,
     )
     unknown_gain: float = setting(

@@ -144,6 +144,29 @@ def screen(
     return found
 
 
+def largest_gain_on_top(problem: Problem, found: Fit, candidates: Sequence[str]) -> float:
+    """Return how much the best of some candidates gains on top of a fit of another program [nats].
+
+    Args:
+        problem: The estimation problem, whose program has these candidates.
+        found: Converged fit of a problem with the same recordings without them.
+        candidates: Their names.
+
+    Returns:
+        The estimated gain by rough fits; minus infinity without candidates.
+    """
+    if not candidates:
+        return -np.inf
+    free = problem.free_parameters(found.effects)
+    theta = free_parameter_values(free, found.values())
+    start = unfitted_hypothesis(found.effects, free, theta, found.levels)
+    base = gauss_newton(
+        problem, start, problem.config.select.calm_steps, problem.config.fit.step_gain
+    )
+    rough = screen(problem, base, candidates)
+    return max(fit.evidence - base.evidence for fit in rough.values())
+
+
 def confirm_screening(problem: Problem, base: Fit, screened: Fit) -> Fit:
     """Check the rough fit of a candidate effect with the full Kalman filter; refit it if it fails.
 

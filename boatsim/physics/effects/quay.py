@@ -97,8 +97,10 @@ class Quay(Force):
     law: ClassVar = law
     strength: ClassVar = ("stiffness",)
     facts: ClassVar = {"track_m": ("north", "east", "north_reach", "east_reach")}
+    # contact of the side at the end of the track, or of the bow
     starts: ClassVar = tuple(
-        {"stiffness": 20.0, "damping": 2.0, "toward": 0.7854 * k, "overlap": 0.03}
+        {"stiffness": 20.0, "damping": 2.0, "toward": 0.7854 * k, "overlap": overlap}
+        for overlap in (0.03, -0.3)
         for k in range(-3, 5)
     )
 
@@ -136,7 +138,7 @@ class Quay(Force):
         unit="m",
         words="depth of the side of the hull in the wall at the end of the track",
         fit=True,
-        spread=0.1,
+        spread=0.2,
     )
     north: float = param(UNSET, low=-1e6, high=1e6, unit="m", words="middle of the track, north")
     east: float = param(UNSET, low=-1e6, high=1e6, unit="m", words="middle of the track, east")
