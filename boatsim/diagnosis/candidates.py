@@ -139,6 +139,7 @@ def candidate_library(
                 last[name] = kind.confounded_with
             continue
         excluded.pop(name, None)
+        last.pop(name, None)
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
         reason = reason or _unrecorded_columns(kind, columns)
         for effect in _both_sides_of_lag(

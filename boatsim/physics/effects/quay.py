@@ -91,6 +91,7 @@ class Quay(Force):
         "K. H. Hunt, F. R. E. Crossley, J. Applied Mechanics 42, 1975: contact force with damping "
         "in proportion to the indentation"
     )
+    of_surroundings: ClassVar[bool] = True
     tied_to: ClassVar[str] = "the quay"
     confounded_with: ClassVar = ("tether",)  # a taut line to the other side pulls alike
     tried_last: ClassVar[bool] = True
