@@ -482,7 +482,7 @@ def try_last_candidates(
 
     They are tried where a force stays unexplained, or where an effect was selected that they are
     confounded with, and if one of them gains `select.last_gain`
-    on top of what was selected.
+    on top of what was selected, or of the vessel alone.
 
     Args:
         loaded: Recordings.
@@ -506,10 +506,13 @@ def try_last_candidates(
     again = set_up_estimation_problem(wider, config)
     report(f"trying {', '.join(last)}")
     compile_program(again.problem)
-    tested = [name for name in last if name in again.candidates]
-    if largest_gain_on_top(again.problem, ranking.best, tested) < config.select.last_gain:
-        return loaded, question, decision
     base = fit_baseline_models(again)
+    tested = [name for name in last if name in again.candidates]
+    gain = largest_gain_on_top(again.problem, ranking.best, tested)
+    if ranking.has_unexplained_force_or_cause:  # stand-ins may have taken up its force
+        gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
+    if gain < config.select.last_gain:
+        return loaded, question, decision
     other = decide_causes(again, select_candidates(again, base, wider, report))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:

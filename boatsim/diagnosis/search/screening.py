@@ -149,7 +149,7 @@ def largest_gain_on_top(problem: Problem, found: Fit, candidates: Sequence[str])
 
     Args:
         problem: The estimation problem, whose program has these candidates.
-        found: Converged fit of a problem with the same recordings without them.
+        found: Converged fit of the same recordings without them, also by another program.
         candidates: Their names.
 
     Returns:
