@@ -110,8 +110,28 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         if main := main_refinement(answer):
             statement += f": {main}" if one else f", above all {main}"
         statements.append(statement)
+    statements += _confirmed_possible(answer)
     statements += _added(answer)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
+
+
+def _confirmed_possible(answer: Answer) -> list[str]:
+    """Return the statement on effects beside a formula that only held-out recordings support.
+
+    Without a formula they are stated as what describes an unknown cause best.
+    """
+    if not answer["described"]:
+        return []
+    found = []
+    for entry in answer.get("also_possible", []):
+        if entry.get("in_patch") and entry.get("confirmed"):
+            found.append(f"“{effect_description(entry['words'])}”")
+    if not found:
+        return []
+    reason = "held-out recordings confirm it, but it may stand in for another cause"
+    if len(found) > 1:
+        reason = "held-out recordings confirm them, but they may stand in for other causes"
+    return [f"the corrected vessel contains {join_words(found[:MOST_NUMBERS])}: {reason}"]
 
 
 def _added(answer: Answer) -> list[str]:

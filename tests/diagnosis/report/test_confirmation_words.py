@@ -1,6 +1,7 @@
 """The report states what each effect alone does to held-out errors, and why a file is not changed."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -167,6 +168,34 @@ def test_effects_added_for_predictions_are_listed_and_not_called_causes(
         for name in names:
             assert f"Meaning of {name}" in page.replace("\\_", "_")
         assert "0.610 ± 0.040" in page
+
+
+def test_a_possible_effect_beside_a_formula_is_stated_if_held_out_recordings_confirm_it() -> None:
+    findings = planar()
+    law: Any = {"statement": "a side force that no candidate effect explains", "carries_over": True}
+    possible: Any = {
+        "name": "quay",
+        "probability": 0.02,
+        "gain_nats": 200.0,
+        "words": "the hull touches a quay or another fixed wall",
+        "why": "so much remains",
+        "in_patch": True,
+        "confirmed": True,
+    }
+    stated = "The corrected vessel contains “the hull touches a quay or another fixed wall”"
+    for entry, described, expected in (
+        (possible, [law], True),
+        ({**possible, "confirmed": False}, [law], False),
+        ({**possible, "in_patch": False}, [law], False),
+        (possible, [], False),
+    ):
+        answer: Answer = {
+            **findings.answer,
+            "described": described,
+            "also_possible": [entry],
+            "added": [],
+        }
+        assert (stated in verdict_sentences(answer)) == expected
 
 
 def test_a_corrected_vessel_of_possible_or_added_effects_is_compared_with_the_retuned_one() -> None:
