@@ -1,5 +1,7 @@
 """Signs of stand-ins in diagnosis.json, and the reason why an effect is only possible."""
 
+from math import hypot
+
 from boatsim.diagnosis.answer.schema import (
     ConsistencyEntry,
     EffectSignsEntry,
@@ -65,7 +67,8 @@ def reason_for_doubt(judged: Judgement, decision: Decision) -> str:
     """
     signs, config = judged.signs, decision.problem.config.decide
     held_out = signs.held_out
-    if abs(held_out.value - 1.0) > config.clear_deviation * held_out.sd:
+    tolerated = hypot(held_out.sd, config.size_tolerance)
+    if abs(held_out.value - 1.0) > config.clear_deviation * tolerated:
         return (
             f"in held-out recordings it has {held_out.value:.2f} ± {held_out.sd:.2f} times the "
             "fitted size"
