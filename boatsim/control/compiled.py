@@ -13,7 +13,7 @@ import numpy as np
 from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
-from boatsim.control.base import Controller, Sense
+from boatsim.control.base import Controller, Estimate, Sense
 from boatsim.control.native_law import ONE, single_boat_law
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import lean, merged, unlocked
@@ -145,6 +145,22 @@ class CompiledController(Controller):
             self._run_law = single_boat_law(type(self).law, records)
         self._run_law()
         return dict(zip(self.channels(), self._sent[0].item(), strict=True))
+
+    def estimates_at(self, memory: Records) -> list[dict[str, Estimate]]:
+        """Return the estimates of the controller for several states of its memory.
+
+        Args:
+            memory: States of the memory (n,).
+        """
+        own = self._memory
+        found: list[dict[str, Estimate]] = []
+        try:
+            for number in range(len(memory)):
+                self._memory = memory[number : number + 1]
+                found.append(self.estimates())
+        finally:
+            self._memory = own
+        return found
 
     @property
     def memory(self) -> Records:

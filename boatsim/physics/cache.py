@@ -44,6 +44,7 @@ from .filter import *
 from .inertia import *
 from .laws import *
 from .motion import *
+from .recording import *
 from .run import *
 '''
 KEPT = 90 * 86400.0  # [s] time after the last use of a program until it is removed

@@ -35,6 +35,14 @@ class GrowingTable:
         self._columns[:, self.count] = row
         self.count += 1
 
+    def append_rows(self, columns: Array) -> None:
+        """Append several rows (columns, rows) to the table."""
+        end = self.count + columns.shape[1]
+        while end > self._columns.shape[1]:
+            self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
+        self._columns[:, self.count : end] = columns
+        self.count = end
+
     def replace_last_values(self, first: int, values: Array) -> None:
         """Replace the values of the table's last row from column number `first` on."""
         self._columns[first:, self.count - 1] = values
@@ -85,6 +93,23 @@ class FileTable(GrowingTable):
             at = 0
         self._columns[:, at] = row
         self.count += 1
+
+    def append_rows(self, columns: Array) -> None:
+        """Append several rows (columns, rows) to the table in the file.
+
+        Raises:
+            OSError: If the disk is full.
+        """
+        begin = 0
+        while begin < columns.shape[1]:
+            at = self.count - self._written
+            if at == PIECE:
+                self._write_piece()
+                at = 0
+            part = columns[:, begin : begin + PIECE - at]
+            self._columns[:, at : at + part.shape[1]] = part
+            self.count += part.shape[1]
+            begin += part.shape[1]
 
     def replace_last_values(self, first: int, values: Array) -> None:
         """Replace values of the table's last row, which is always in memory, from `first` on."""

@@ -13,6 +13,7 @@ from boatsim.physics.signals import MeasuredMotion, Motion
 from .laws import (
     HELD,
     advance_motion_memory,
+    air_wrench,
     water_change,
     water_displacement,
     water_velocity,
@@ -160,7 +161,13 @@ def dynamics_functions(w: EquationWriter) -> list[str]:
         function_text(
             "total_body_force(t, s, act, at, p, on)",
             "Body force (NQ,) of all laws with the actuators act[at:].",
-            w.total_body_force_code(),
+            w.body_force_code("wrench"),
+            "lean",
+        ),
+        function_text(
+            "air_body_force(t, s, act, at, p, on)",
+            "Body force (NQ,) of the laws of the air with the actuators act[at:].",
+            w.body_force_code("air_wrench"),
             "lean",
         ),
         function_text(

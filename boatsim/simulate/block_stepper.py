@@ -1,0 +1,278 @@
+"""Many steps of a run in open water at once: the controller acts in between, each step is recorded.
+
+A compiled controller acts in compiled code too. The results are those of `ControlLoop`, which takes
+one step after another, to the last bit: both call the same compiled functions.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.control.base import Controller, Sense
+from boatsim.control.compiled import CompiledController
+from boatsim.errors import BoatsimError
+from boatsim.physics.native.calls import partial_call
+from boatsim.physics.signals import Array
+from boatsim.simulate.compiled_loop import History
+from boatsim.simulate.compiled_periods import CompiledPeriods
+from boatsim.simulate.control_columns import SENSED_PLACES
+from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_end import TIME_TOLERANCE, RunEnd
+from boatsim.simulate.step_block import (
+    BlockPlan,
+    ControlValues,
+    StepBlock,
+    control_numbers,
+    joined_values,
+)
+from boatsim.simulate.step_record import make_step_record
+from boatsim.simulate.stepper import State
+
+if TYPE_CHECKING:
+    from boatsim.simulate.control_loop import ControlLoop
+
+MOST_STEPS = 1000  # of a block: some milliseconds, after which a run can be interrupted
+
+
+class Advanced(NamedTuple):
+    """Result of the steps of a block.
+
+    Attributes:
+        steps: Number of steps that belong to the run.
+        control: Values at the control steps.
+        error: Why the run ends with an error after these steps.
+    """
+
+    steps: int
+    control: ControlValues
+    error: BoatsimError | None = None
+
+
+class BlockStepper:
+    """Advances the control loop of a run in open water by many steps at once."""
+
+    def __init__(self, loop: "ControlLoop", engine: OpenWater) -> None:
+        """Create the record of the steps; use `create_if_possible`, which checks the conditions.
+
+        Args:
+            loop: The control loop.
+            engine: Its engine.
+        """
+        self._loop, self._engine = loop, engine
+        self._record = make_step_record(engine.program, MOST_STEPS, MOST_STEPS)
+        self._record_period: Callable[[], None] = partial_call(
+            engine.code, "record_steps", engine.batch.fleet, engine.step, self._record
+        )
+
+    @classmethod
+    def create_if_possible(cls, loop: "ControlLoop") -> "BlockStepper | None":
+        """Return an object that advances a control loop by many steps at once, or None.
+
+        It is possible in open water if the controller acts only once per period.
+
+        Args:
+            loop: The control loop.
+        """
+        acts_between = (
+            type(loop.scenario.controller).time_to_extra_step is not Controller.time_to_extra_step
+        )
+        if acts_between or not isinstance(loop.engine, OpenWater):
+            return None
+        return cls(loop, loop.engine)
+
+    @cached_property
+    def _compiled(self) -> CompiledPeriods | None:
+        loop = self._loop
+        return CompiledPeriods.create_if_possible(
+            loop.scenario, self._engine, loop.imu, self._record
+        )
+
+    def advance(self, end: RunEnd, rows_due: Callable[[Array], NDArray[np.bool_]]) -> StepBlock:
+        """Advance the control loop by a block of steps.
+
+        Args:
+            end: Conditions that end the run.
+            rows_due: Returns at which of several times [s] a row of the log is due.
+
+        Returns:
+            The steps.
+        """
+        plan, record = self._plan(end, rows_due), self._record
+        steps = len(plan.times)
+        record.done[:] = 0
+        record.ends[: len(plan.period_ends)] = plan.period_ends
+        record.logged[:steps] = plan.logged | plan.may_end_early
+        done = self._advance_compiled(plan, end)
+        if done is None:
+            done = self._advance_with_calls(plan, end)
+        logged = plan.logged[: done.steps].copy()
+        if done.error is None and self._is_finished(done.steps, end):
+            logged[-1] = True
+        after = control_numbers(plan.stops, steps)[: done.steps]
+        return StepBlock(
+            record=record,
+            count=done.steps,
+            step=self._engine.step,
+            logged=logged,
+            control=done.control,
+            control_after=after,
+            control_before=np.concatenate([[0], after])[:-1],
+            error=done.error,
+        )
+
+    def _plan(self, end: RunEnd, rows_due: Callable[[Array], NDArray[np.bool_]]) -> BlockPlan:
+        """Plan the next steps: their times are sums, as in the compiled functions."""
+        loop = self._loop
+        lengths = np.full(MOST_STEPS + 1, self._engine.step)
+        lengths[0] = loop.state.t
+        times = np.add.accumulate(lengths)[1:]
+        over = int(np.searchsorted(times, end.duration - TIME_TOLERANCE))
+        times = times[: over + 1]
+        stops, due, period = list[int](), loop.due, loop.scenario.controller.period
+        for number, t in enumerate(times.tolist(), 1):
+            if t >= due - TIME_TOLERANCE:
+                stops.append(number)
+                due += period
+        logged = rows_due(times)
+        logged[-1] |= end.is_over(times[-1])
+        ends_by_itself = type(loop.scenario.controller).done is not Controller.done
+        return BlockPlan(times, stops, due, logged, end.depends_on_motion or ends_by_itself)
+
+    def _advance_compiled(self, plan: BlockPlan, end: RunEnd) -> Advanced | None:
+        """Let a compiled controller act in compiled code; None if that is not possible."""
+        loop = self._loop
+        if self._compiled is None or not plan.stops:
+            return None
+        law = loop.scenario.controller
+        assert isinstance(law, CompiledController)
+        try:
+            goals = self._goal_values(law, [plan.times[stop - 1] for stop in plan.stops])
+        except KeyError:  # The error is raised when the controller acts.
+            return None
+        needed = plan.needs_values()
+        first = self._present_values(bool(needed[0]))
+        history = self._compiled.advance(goals)
+        if plan.period_ends[-1] > plan.stops[-1]:
+            self._record_period()
+        loop.due = plan.due
+        count, error = self._count_valid_steps(0, len(plan.times), end)
+        if not np.isfinite(history.orders).all():
+            count, error = self._first_bad_order(plan, history, count, error)
+        orders = dict(zip(loop.channels, history.orders[-1].tolist(), strict=True))
+        loop.follow_engine(self._state(max(count, 1)), Sense(*history.felt[-1].tolist()), orders)
+        rest = self._values_of_history(history, needed[1:])
+        return Advanced(count, joined_values([first, rest]), error)
+
+    def _advance_with_calls(self, plan: BlockPlan, end: RunEnd) -> Advanced:
+        """Let the controller act by calls from Python."""
+        loop, needed = self._loop, plan.needs_values()
+        values, begin = [self._present_values(bool(needed[0]))], 0
+        count, error = 0, None
+        for number, stop in enumerate(plan.period_ends, 1):
+            self._record_period()
+            count, error = self._count_valid_steps(begin, stop, end)
+            if error is not None:
+                break
+            loop.state = self._state(count)
+            if count < stop:
+                break
+            if number <= len(plan.stops):
+                try:
+                    loop.control()
+                    values.append(self._present_values(bool(needed[number])))
+                except BoatsimError as raised:
+                    count, error = stop - 1, raised
+                    break
+            if self._is_finished(count, end):
+                break
+            begin = stop
+        return Advanced(count, joined_values(values), error)
+
+    def _goal_values(self, law: CompiledController, times: Sequence[float]) -> Array:
+        """Goals (periods, G) at several times [s]; raises KeyError if one is missing."""
+        goal: Mapping[str, float] | None = None
+        values: tuple[float, ...] = ()
+        rows: list[tuple[float, ...]] = []
+        for t in times:
+            present = self._loop.goal_at(t)
+            if present is not goal:
+                goal, values = present, law.goal_values(present)
+            rows.append(values)
+        return np.array(rows, dtype=float).reshape(len(times), len(law.goals))
+
+    def _is_finished(self, count: int, end: RunEnd) -> bool:
+        """Whether the run ends after some steps of the block."""
+        return self._loop.scenario.controller.done or end.is_reached(self._state(count))
+
+    def _count_valid_steps(
+        self, begin: int, stop: int, end: RunEnd
+    ) -> tuple[int, BoatsimError | None]:
+        """Number of steps until the motion ends the run, and the error if it diverges before."""
+        states = self._record.states[begin:stop]
+        count = stop
+        if end.depends_on_motion and (reached := end.first_reached(states)) is not None:
+            count = begin + reached + 1
+        sums = states[: count - begin].sum(axis=1)
+        if np.isfinite(sums).all():
+            return count, None
+        lost = begin + int(np.argmin(np.isfinite(sums)))
+        return lost, self._engine.diverged(float(self._record.states[lost, 0]))
+
+    def _first_bad_order(
+        self, plan: BlockPlan, history: History, count: int, error: BoatsimError | None
+    ) -> tuple[int, BoatsimError | None]:
+        """Number of steps and error, if a command that is not finite comes first."""
+        number = int(np.argmin(np.isfinite(history.orders).all(axis=1)))
+        stop = plan.stops[number]
+        if stop > count:
+            return count, error
+        loop = self._loop
+        loop.state = self._state(stop)
+        orders = dict(zip(loop.channels, history.orders[number].tolist(), strict=True))
+        try:
+            with loop.name_controller_in_errors():
+                self._engine.command(orders)
+        except BoatsimError as raised:
+            return stop - 1, raised
+        return count, error
+
+    def _state(self, count: int) -> State:
+        """State after some steps of the block."""
+        return State(*self._record.states[count - 1].tolist())
+
+    def _present_values(self, with_estimates: bool) -> ControlValues:
+        """Values of the last control step."""
+        loop, columns = self._loop, self._loop.columns
+        estimated = columns.no_estimates()
+        if with_estimates and columns.estimated:
+            with loop.name_controller_in_errors() as controller:
+                estimated = columns.estimated_values(controller.estimates())
+        return ControlValues(
+            np.array([loop.commands_in_force()]),
+            np.array([[loop.sent[name] for name in loop.channels]]),
+            np.array([columns.sensed_values(loop.sense)]),
+            np.array([estimated]),
+        )
+
+    def _values_of_history(self, history: History, needed: NDArray[np.bool_]) -> ControlValues:
+        """Values of the control steps in compiled code."""
+        loop, columns = self._loop, self._loop.columns
+        law = loop.scenario.controller
+        assert isinstance(law, CompiledController)
+        estimated = np.full((len(history.felt), len(columns.estimated)), np.nan)
+        if columns.estimated and needed.any():
+            memory = history.memory[needed].view(law.memory.dtype)[:, 0]
+            with loop.name_controller_in_errors():
+                found = list(map(columns.estimated_values, law.estimates_at(memory)))
+            estimated[needed] = found
+        inputs: Sequence[str] = loop.scenario.vessel.inputs
+        places = [inputs.index(name) for name in loop.channels]
+        return ControlValues(
+            history.commands[:, places],
+            history.orders,
+            history.felt[:, SENSED_PLACES],
+            estimated,
+        )
