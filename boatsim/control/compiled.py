@@ -146,20 +146,22 @@ class CompiledController(Controller):
         self._run_law()
         return dict(zip(self.channels(), self._sent[0].item(), strict=True))
 
-    def estimates_at(self, memory: Records) -> list[dict[str, Estimate]]:
-        """Return the estimates of the controller for several states of its memory.
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
+        """Return the estimates of the controller for one state of its memory, or for several.
+
+        Controllers with estimates override it.
 
         Args:
-            memory: States of the memory (n,).
+            memory: One record of the type `memory_type`, or an array of such records; its fields
+                are numbers, or arrays with a number for each record.
         """
-        own = self._memory
-        found: list[dict[str, Estimate]] = []
-        try:
-            for number in range(len(memory)):
-                self._memory = memory[number : number + 1]
-                found.append(self.estimates())
-        finally:
-            self._memory = own
+        return {}
+
+    def estimates(self) -> dict[str, Estimate]:
+        """Return the controller's present estimates, for the log of a run."""
+        found: dict[str, Estimate] = {}
+        for name, (value, low, high) in self.estimates_from(self.single_memory_record).items():
+            found[name] = Estimate(float(value), float(low), float(high))
         return found
 
     @property

@@ -20,6 +20,7 @@ import tempfile
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from inspect import getsourcefile
 from pathlib import Path
 from types import ModuleType
@@ -57,11 +58,19 @@ def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) 
         written: Text of each generated file of the program, by file name.
         classes: Classes of the effects whose laws the program calls.
     """
+    return _import_program(tuple(sorted(written.items())), frozenset(classes))
+
+
+@cache
+def _import_program(
+    written: tuple[tuple[str, str], ...], classes: frozenset[type[Effect]]
+) -> ModuleType:
+    """The program of these files; each is looked up once in a process."""
     copied = {}
     for path in sorted(KERNEL.glob("*.py")):
         if path.name not in (*SHARED, *GENERATORS, *WRITTEN):
             copied[path.name] = path.read_text(encoding="utf-8")
-    own = {**written, "__init__.py": EXPORTS}
+    own = {**dict(written), "__init__.py": EXPORTS}
     stamp = program_digest(copied | own, classes)
     if DEBUG:
         return import_cached_package(own, f"{stamp}_debug", KERNEL)

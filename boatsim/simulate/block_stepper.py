@@ -4,7 +4,7 @@ A compiled controller acts in compiled code too. The results are those of `Contr
 one step after another, to the last bit: both call the same compiled functions.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -149,11 +149,10 @@ class BlockStepper:
         law = loop.scenario.controller
         assert isinstance(law, CompiledController)
         try:
-            goals = self._goal_values(law, [plan.times[stop - 1] for stop in plan.stops])
+            goals = self._goal_values(law, plan.times[np.array(plan.stops) - 1])
         except KeyError:  # The error is raised when the controller acts.
             return None
-        needed = plan.needs_values()
-        first = self._present_values(bool(needed[0]))
+        first = self._present_values(bool(plan.needs_values()[0]))
         history = self._compiled.advance(goals)
         if plan.period_ends[-1] > plan.stops[-1]:
             self._record_period()
@@ -163,7 +162,7 @@ class BlockStepper:
             count, error = self._first_bad_order(plan, history, count, error)
         orders = dict(zip(loop.channels, history.orders[-1].tolist(), strict=True))
         loop.follow_engine(self._state(max(count, 1)), Sense(*history.felt[-1].tolist()), orders)
-        rest = self._values_of_history(history, needed[1:])
+        rest = self._values_of_history(history)
         return Advanced(count, joined_values([first, rest]), error)
 
     def _advance_with_calls(self, plan: BlockPlan, end: RunEnd) -> Advanced:
@@ -191,17 +190,12 @@ class BlockStepper:
             begin = stop
         return Advanced(count, joined_values(values), error)
 
-    def _goal_values(self, law: CompiledController, times: Sequence[float]) -> Array:
+    def _goal_values(self, law: CompiledController, times: Array) -> Array:
         """Goals (periods, G) at several times [s]; raises KeyError if one is missing."""
-        goal: Mapping[str, float] | None = None
-        values: tuple[float, ...] = ()
-        rows: list[tuple[float, ...]] = []
-        for t in times:
-            present = self._loop.goal_at(t)
-            if present is not goal:
-                goal, values = present, law.goal_values(present)
-            rows.append(values)
-        return np.array(rows, dtype=float).reshape(len(times), len(law.goals))
+        rows = np.empty((len(times), len(law.goals)))
+        for span, goal in self._loop.goal_spans(times):
+            rows[span] = law.goal_values(goal)
+        return rows
 
     def _is_finished(self, count: int, end: RunEnd) -> bool:
         """Whether the run ends after some steps of the block."""
@@ -257,17 +251,14 @@ class BlockStepper:
             np.array([estimated]),
         )
 
-    def _values_of_history(self, history: History, needed: NDArray[np.bool_]) -> ControlValues:
+    def _values_of_history(self, history: History) -> ControlValues:
         """Values of the control steps in compiled code."""
         loop, columns = self._loop, self._loop.columns
         law = loop.scenario.controller
         assert isinstance(law, CompiledController)
-        estimated = np.full((len(history.felt), len(columns.estimated)), np.nan)
-        if columns.estimated and needed.any():
-            memory = history.memory[needed].view(law.memory.dtype)[:, 0]
-            with loop.name_controller_in_errors():
-                found = list(map(columns.estimated_values, law.estimates_at(memory)))
-            estimated[needed] = found
+        with loop.name_controller_in_errors():
+            found = law.estimates_from(history.memory.view(law.memory.dtype)[:, 0])
+        estimated = columns.estimated_rows(found, len(history.felt))
         inputs: Sequence[str] = loop.scenario.vessel.inputs
         places = [inputs.index(name) for name in loop.channels]
         return ControlValues(

@@ -7,6 +7,7 @@ pointers, so that it is compiled once for each kind of controller, whatever vess
 from functools import cache
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 from numba import types
 
@@ -272,15 +273,29 @@ def compile_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
     return own
 
 
-@cache
-def compile_recorded_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
-    """Return the compiled form of `run_recorded_periods` for given argument types.
+def recorded_loop(law: Any, feel: Call, advance: Call, loop: Loop) -> tuple[Any, Any]:
+    """Return a control law as an argument of `run_recorded_periods`, and this function, compiled.
+
+    Each combination of types of arguments is compiled once.
 
     Args:
-        kinds: Types of the control law and of the calls for sensing and physics.
-        loop: Type of the record `Loop`.
+        law: Law of the controller.
+        feel: Reads the instruments of the vessel.
+        advance: Integrates the physics and records each step.
+        loop: Records and arrays of the controller.
     """
-    own: Any = unlocked(run_recorded_periods)
-    own.compile((*kinds, Boats, Rows, loop, Rows, HISTORY))
-    own.disable_compile()
-    return own
+    # the types of records are slow to find out
+    key = (law, tuple(records.dtype for records in loop.control), type(feel.function))
+    if key not in _RECORDED_LOOPS:
+        pointer = law_pointer(law, tuple(map(numba.typeof, loop.control)))
+        own: Any = run_recorded_periods
+        if not DEBUG:
+            own = unlocked(run_recorded_periods)
+            kinds = pointer.kind, numba.typeof(feel), numba.typeof(advance)
+            own.compile((*kinds, Boats, Rows, numba.typeof(loop), Rows, HISTORY))
+            own.disable_compile()
+        _RECORDED_LOOPS[key] = pointer, own
+    return _RECORDED_LOOPS[key]
+
+
+_RECORDED_LOOPS: dict[Any, tuple[Any, Any]] = {}  # laws and loops that are compiled

@@ -1,6 +1,5 @@
 """Several control periods of a vessel with a compiled controller, recorded in one call."""
 
-import numba
 import numpy as np
 
 from boatsim.control.base import Controller
@@ -12,7 +11,6 @@ from boatsim.control.compiled import (
     indices_of_names,
     view_as_array,
 )
-from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.records import StepRecord
 from boatsim.physics.signals import Array
 from boatsim.simulate import compiled_loop
@@ -58,22 +56,14 @@ class CompiledPeriods:
         self._goal, self._sent = (np.zeros(1, t) for t in type(law).record_types())
         self._saturated = np.zeros((1, len(vessel.inputs)))
         self._memory = view_as_array(law.memory)
-        loop = self._loop(np.zeros((1, len(law.goals))), np.zeros((1, 1, NOISES)))
-        self._pointer = compiled_loop.law_pointer(
-            type(law).law, tuple(map(numba.typeof, loop.control))
-        )
         feel = compiled_loop.ProgramFunction(code.read_instruments_of_boats, compiled_loop.FEEL)
         self._feel = feel.bind_arguments(ONE, fleet, view_as_array(self._sense))
         steps = compiled_loop.ProgramFunction(code.record_steps, compiled_loop.RECORD_STEPS)
         self._advance = steps.bind_arguments(fleet, engine.step, record)
-        self._run = compiled_loop.run_recorded_periods
-        if not DEBUG:
-            kinds = (
-                self._pointer.kind,
-                numba.typeof(self._feel),
-                numba.typeof(self._advance),
-            )
-            self._run = compiled_loop.compile_recorded_loop(kinds, numba.typeof(loop))
+        loop = self._loop(np.zeros((1, len(law.goals))), np.zeros((1, 1, NOISES)))
+        self._pointer, self._run = compiled_loop.recorded_loop(
+            type(law).law, self._feel, self._advance, loop
+        )
 
     @classmethod
     def create_if_possible(
@@ -100,6 +90,8 @@ class CompiledPeriods:
         if scenario.additional_sensors or scenario.has_off_goal:
             return None
         if type(law).done is not Controller.done or law.memory.dtype.itemsize % WORD:
+            return None
+        if type(law).estimates is not CompiledController.estimates:  # may depend on other things
             return None
         return cls(scenario, engine, law, imu, record)
 

@@ -4,8 +4,11 @@ from collections.abc import Mapping
 from math import nan
 from operator import attrgetter
 
+import numpy as np
+
 from boatsim.control.base import Estimate, Sense
 from boatsim.control.compiled import SENSE_FIELDS
+from boatsim.physics.signals import Array
 from boatsim.simulate.scenario import Scenario
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
@@ -56,6 +59,18 @@ class ControlColumns:
             values += estimates[name]
         values += [estimates[name].value for name in self._references]
         return values
+
+    def estimated_rows(self, estimates: Mapping[str, Estimate], count: int) -> Array:
+        """Return values (N, E) of the columns `estimated`.
+
+        Args:
+            estimates: Estimates of the controller, of which the entries are numbers or arrays (N,).
+            count: Number of rows N.
+        """
+        rows = np.empty((count, len(self.estimated)))
+        for column, values in enumerate(self.estimated_values(estimates)):
+            rows[:, column] = values
+        return rows
 
     def no_estimates(self) -> list[float]:
         """Return values of the columns `estimated` where no row of the log needs them."""

@@ -179,6 +179,14 @@ class ControlLoop:
         self.saturated.update(self._saturated_steps(block))
         return block
 
+    def goal_spans(self, times: Array) -> Iterator[tuple[slice, Mapping[str, float]]]:
+        """Yield the goals over ascending times (N,) [s]: ranges of equal goals, and the goals."""
+        if self.goal_at == self.scenario.goal_at:
+            yield from self.scenario.goal_spans(times)
+            return
+        for number, t in enumerate(times.tolist()):
+            yield slice(number, number + 1), self.goal_at(t)
+
     def _saturated_steps(self, block: StepBlock) -> dict[str, int]:
         """Channel -> number of steps in which a command exceeded its range."""
         control, found = block.control, dict[str, int]()

@@ -1,6 +1,5 @@
 """The log of a run: its columns, and a row for every time at which one is due."""
 
-from collections.abc import Mapping
 from math import nan
 from operator import attrgetter
 
@@ -194,15 +193,12 @@ class RunLog:
 
     def _goals_at(self, times: Array) -> Array:
         """Goals (N, G) at several times [s]."""
-        goal: Mapping[str, float] | None = None
-        values: list[float] = []
-        rows: list[list[float]] = []
-        for t in times.tolist():
-            present = self._loop.goal_at(t)
-            if present is not goal:
-                goal, values = present, [present.get(name, nan) for name in self._goals]
-            rows.append(values)
-        return np.array(rows).reshape(len(times), len(self._goals))
+        rows = np.full((len(times), len(self._goals)), nan)
+        for span, goal in self._loop.goal_spans(times):
+            for column, name in enumerate(self._goals):
+                if name in goal:
+                    rows[span, column] = goal[name]
+        return rows
 
     def recording(self, notes: Notes, start: int = 0) -> Recording:
         """Return the log from row `start` on as a recording.

@@ -1,5 +1,7 @@
 """Generates `motion.py` of a program: equations of motion and kinematics."""
 
+from functools import cache
+
 from boatsim.physics.kernel.equations import CONSTANTS, EquationWriter
 from boatsim.physics.signals import AXES
 
@@ -227,6 +229,7 @@ def observation_functions(w: EquationWriter) -> list[str]:
     ]
 
 
+@cache
 def motion_module_text(dof: tuple[str, ...], centred: bool, varying_water: bool = False) -> str:
     """Return the source of `motion.py`, the equations of motion of a vessel.
 
