@@ -83,8 +83,7 @@ class Sway(CameraMetricSet):
         """
         still = np.zeros(frames)
         marks = camera.measured_mark_positions(still, still, sample_mark_noise(frames, camera))
-        _, psi = camera.fit_pose(marks)
-        return self.yaw_rate_metrics(psi, 1.0 / self.scored)
+        return self.yaw_rate_metrics(camera.fit_heading(marks), 1.0 / self.scored)
 
     def yaw_rate_metrics(self, psi: Array, dt: float) -> dict[str, Array]:
         """Return norms of the yaw rate of a sequence of headings, and the heading change over it.

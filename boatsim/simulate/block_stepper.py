@@ -6,19 +6,21 @@ one step after another, to the last bit: both call the same compiled functions.
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.control.base import Controller, Sense
-from boatsim.control.compiled import CompiledController
+from boatsim.control.compiled import SENSE_FIELDS, CompiledController
 from boatsim.errors import BoatsimError
+from boatsim.physics.commands import SLACK
 from boatsim.physics.native.calls import partial_call
 from boatsim.physics.signals import Array
 from boatsim.simulate.compiled_loop import History
 from boatsim.simulate.compiled_periods import CompiledPeriods
 from boatsim.simulate.control_columns import SENSED_PLACES
+from boatsim.simulate.control_loop import ControlLoop
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run_end import TIME_TOLERANCE, RunEnd
 from boatsim.simulate.step_block import (
@@ -31,10 +33,10 @@ from boatsim.simulate.step_block import (
 from boatsim.simulate.step_record import make_step_record
 from boatsim.simulate.stepper import State
 
-if TYPE_CHECKING:
-    from boatsim.simulate.control_loop import ControlLoop
-
-MOST_STEPS = 1000  # of a block: some milliseconds, after which a run can be interrupted
+# Steps of a block, after which a run can be interrupted: milliseconds, or a second in waves of many
+# components. Shorter blocks cost more time for each step.
+MOST_STEPS = 3000
+MOST_STEPS_UNTIL = 1000  # the same where the motion may end the run, so that few are in vain
 
 
 class Advanced(NamedTuple):
@@ -54,7 +56,7 @@ class Advanced(NamedTuple):
 class BlockStepper:
     """Advances the control loop of a run in open water by many steps at once."""
 
-    def __init__(self, loop: "ControlLoop", engine: OpenWater) -> None:
+    def __init__(self, loop: ControlLoop, engine: OpenWater) -> None:
         """Create the record of the steps; use `create_if_possible`, which checks the conditions.
 
         Args:
@@ -68,7 +70,7 @@ class BlockStepper:
         )
 
     @classmethod
-    def create_if_possible(cls, loop: "ControlLoop") -> "BlockStepper | None":
+    def create_if_possible(cls, loop: ControlLoop) -> "BlockStepper | None":
         """Return an object that advances a control loop by many steps at once, or None.
 
         It is possible in open water if the controller acts only once per period.
@@ -106,13 +108,15 @@ class BlockStepper:
         record.ends[: len(plan.period_ends)] = plan.period_ends
         record.logged[:steps] = plan.logged | plan.may_end_early
         done = self._advance_compiled(plan, end)
+        if done is None and self._passes_goals_on:
+            done = self._advance_with_goals(plan, end)
         if done is None:
             done = self._advance_with_calls(plan, end)
         logged = plan.logged[: done.steps].copy()
         if done.error is None and self._is_finished(done.steps, end):
             logged[-1] = True
         after = control_numbers(plan.stops, steps)[: done.steps]
-        return StepBlock(
+        block = StepBlock(
             record=record,
             count=done.steps,
             step=self._engine.step,
@@ -122,11 +126,27 @@ class BlockStepper:
             control_before=np.concatenate([[0], after])[:-1],
             error=done.error,
         )
+        self._loop.steps += block.count
+        self._loop.saturated.update(self._saturated_steps(block))
+        return block
+
+    def _saturated_steps(self, block: StepBlock) -> dict[str, int]:
+        """Channel -> number of steps in which a command exceeded its range."""
+        control, found = block.control, dict[str, int]()
+        steps = np.bincount(block.control_before, minlength=len(control.sent))
+        limits = self._loop.scenario.vessel.limits()
+        for j, name in enumerate(self._loop.channels):
+            low, high = limits[name]
+            excess = np.abs(control.sent[:, j] - control.commands[:, j])
+            if count := int(steps[excess > SLACK * (high - low)].sum()):
+                found[name] = count
+        return found
 
     def _plan(self, end: RunEnd, rows_due: Callable[[Array], NDArray[np.bool_]]) -> BlockPlan:
         """Plan the next steps: their times are sums, as in the compiled functions."""
         loop = self._loop
-        lengths = np.full(MOST_STEPS + 1, self._engine.step)
+        steps = MOST_STEPS_UNTIL if end.depends_on_motion else MOST_STEPS
+        lengths = np.full(steps + 1, self._engine.step)
         lengths[0] = loop.state.t
         times = np.add.accumulate(lengths)[1:]
         over = int(np.searchsorted(times, end.duration - TIME_TOLERANCE))
@@ -165,10 +185,55 @@ class BlockStepper:
         rest = self._values_of_history(history)
         return Advanced(count, joined_values([first, rest]), error)
 
+    @cached_property
+    def _passes_goals_on(self) -> bool:
+        """Whether the goals are the commands and nothing else depends on the sensors."""
+        scenario = self._loop.scenario
+        kind = type(scenario.controller)
+        if not kind.passes_on or scenario.additional_sensors or scenario.has_off_goal:
+            return False
+        return kind.done is Controller.done and kind.estimates is Controller.estimates
+
+    def _advance_with_goals(self, plan: BlockPlan, end: RunEnd) -> Advanced:
+        """Send the goals as commands; the sensors are read for the log only."""
+        loop, engine = self._loop, self._engine
+        first = self._present_values(False)
+        periods = len(plan.stops)
+        felt = np.empty((periods, len(SENSE_FIELDS)))
+        commands, sent = np.empty((2, periods, len(loop.channels)))
+        stop_times = plan.times[np.array(plan.stops, dtype=int) - 1]
+        count, error = len(plan.times), None
+        for span, goal in loop.goal_spans(stop_times):
+            for number in range(span.start, span.stop):
+                self._record_period()
+                felt[number] = engine.true_readings()
+                if number > span.start:
+                    continue
+                loop.state = self._state(plan.stops[number])
+                try:
+                    with loop.name_controller_in_errors() as controller:
+                        loop.send_commands(controller.step(loop.sense, goal))
+                except BoatsimError as raised:
+                    lost, error = self._count_valid_steps(0, plan.stops[number] - 1, end)
+                    return Advanced(lost, first, error or raised)
+            commands[span] = loop.commands_in_force()
+            sent[span] = [loop.sent[name] for name in loop.channels]
+        if plan.period_ends[-1:] != plan.stops[-1:]:
+            self._record_period()
+        loop.due = plan.due
+        count, error = self._count_valid_steps(0, len(plan.times), end)
+        loop.state = self._state(max(count, 1))
+        loop.scenario.sensors.add_errors(felt, loop.imu)
+        if periods:
+            loop.sense = Sense(*felt[-1].tolist())
+        estimated = np.empty((periods, 0))
+        rest = ControlValues(commands, sent, felt[:, SENSED_PLACES], estimated)
+        return Advanced(count, joined_values([first, rest]), error)
+
     def _advance_with_calls(self, plan: BlockPlan, end: RunEnd) -> Advanced:
         """Let the controller act by calls from Python."""
         loop, needed = self._loop, plan.needs_values()
-        values, begin = [self._present_values(bool(needed[0]))], 0
+        values, begin = [self._present_lists(bool(needed[0]))], 0
         count, error = 0, None
         for number, stop in enumerate(plan.period_ends, 1):
             self._record_period()
@@ -181,14 +246,14 @@ class BlockStepper:
             if number <= len(plan.stops):
                 try:
                     loop.control()
-                    values.append(self._present_values(bool(needed[number])))
+                    values.append(self._present_lists(bool(needed[number])))
                 except BoatsimError as raised:
                     count, error = stop - 1, raised
                     break
             if self._is_finished(count, end):
                 break
             begin = stop
-        return Advanced(count, joined_values(values), error)
+        return Advanced(count, ControlValues(*map(np.array, zip(*values, strict=True))), error)
 
     def _goal_values(self, law: CompiledController, times: Array) -> Array:
         """Goals (periods, G) at several times [s]; raises KeyError if one is missing."""
@@ -239,17 +304,19 @@ class BlockStepper:
 
     def _present_values(self, with_estimates: bool) -> ControlValues:
         """Values of the last control step."""
+        return ControlValues(
+            *(np.array([values]) for values in self._present_lists(with_estimates))
+        )
+
+    def _present_lists(self, with_estimates: bool) -> tuple[list[float], ...]:
+        """Values of the last control step, in the order of `ControlValues`."""
         loop, columns = self._loop, self._loop.columns
         estimated = columns.no_estimates()
         if with_estimates and columns.estimated:
             with loop.name_controller_in_errors() as controller:
                 estimated = columns.estimated_values(controller.estimates())
-        return ControlValues(
-            np.array([loop.commands_in_force()]),
-            np.array([[loop.sent[name] for name in loop.channels]]),
-            np.array([columns.sensed_values(loop.sense)]),
-            np.array([estimated]),
-        )
+        sent = [loop.sent[name] for name in loop.channels]
+        return loop.commands_in_force(), sent, columns.sensed_values(loop.sense), estimated
 
     def _values_of_history(self, history: History) -> ControlValues:
         """Values of the control steps in compiled code."""

@@ -93,9 +93,20 @@ class Camera(CheckedParameters):
         Returns:
             Complex position (...) of the CG [m] and heading (...) [rad].
         """
-        centre, turn = self._weights
-        place, bow = _product(seen, centre).sum(axis=-1), _product(seen, turn).sum(axis=-1)
-        return place, np.angle(bow)
+        centre, _ = self._weights
+        return _product(seen, centre).sum(axis=-1), self.fit_heading(seen)
+
+    def fit_heading(self, seen: Array) -> Array:
+        """Return the heading of the pose that fits measured positions of hull marks best.
+
+        Args:
+            seen: Complex positions (..., M) of the marks [m].
+
+        Returns:
+            Heading (...) [rad].
+        """
+        _, turn = self._weights
+        return np.asarray(np.angle(_product(seen, turn).sum(axis=-1)))
 
     def pose_noise(self) -> dict[str, float]:
         """Return the standard deviations of a pose measured by the camera.

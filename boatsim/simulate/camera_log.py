@@ -146,7 +146,7 @@ class CameraLog:
             means[between] = weighted / np.add.reduceat(seconds, at)[:, None]
             if self.table.count and between[0] == 0:
                 self.table.replace_last_values(self._first_command, means[0])
-        self.table.append_rows(np.concatenate([frames, means[1:]], axis=1).T)
+        self.table.append_rows([frames, means[1:]])
         self._number += len(frames)
 
     def recording(self, notes: Notes, start: int = 0, end: int | None = None) -> Recording:

@@ -4,26 +4,21 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cached_property
 from inspect import getsourcefile
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from boatsim.control.base import Controller, Sense
 from boatsim.errors import BadInput, BoatsimError
-from boatsim.physics.commands import SLACK
 from boatsim.physics.signals import Array
-from boatsim.simulate.block_stepper import BlockStepper
 from boatsim.simulate.control_columns import ControlColumns
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.open_water import OpenWater
-from boatsim.simulate.run_end import TIME_TOLERANCE, RunEnd
+from boatsim.simulate.run_end import TIME_TOLERANCE
 from boatsim.simulate.run_options import GoalSource
 from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import add_further_readings
-from boatsim.simulate.step_block import StepBlock
 
 SHORTEST_PART = 1e-6  # [s] of a step that the controller cuts
 
@@ -154,31 +149,6 @@ class ControlLoop:
         self.due += self.scenario.controller.period
         self._sense_and_control()
 
-    @cached_property
-    def _block_stepper(self) -> BlockStepper | None:
-        return BlockStepper.create_if_possible(self)
-
-    def advance_block(
-        self, end: RunEnd, rows_due: Callable[[Array], NDArray[np.bool_]]
-    ) -> StepBlock | None:
-        """Advance the run by many steps with compiled code, where that is possible.
-
-        It is possible in open water if the controller acts only once per period.
-
-        Args:
-            end: Conditions that end the run.
-            rows_due: Returns at which of several times [s] a row of the log is due.
-
-        Returns:
-            The steps; None if nothing was done.
-        """
-        if self._block_stepper is None:
-            return None
-        block = self._block_stepper.advance(end, rows_due)
-        self.steps += block.count
-        self.saturated.update(self._saturated_steps(block))
-        return block
-
     def goal_spans(self, times: Array) -> Iterator[tuple[slice, Mapping[str, float]]]:
         """Yield the goals over ascending times (N,) [s]: ranges of equal goals, and the goals."""
         if self.goal_at == self.scenario.goal_at:
@@ -186,18 +156,6 @@ class ControlLoop:
             return
         for number, t in enumerate(times.tolist()):
             yield slice(number, number + 1), self.goal_at(t)
-
-    def _saturated_steps(self, block: StepBlock) -> dict[str, int]:
-        """Channel -> number of steps in which a command exceeded its range."""
-        control, found = block.control, dict[str, int]()
-        steps = np.bincount(block.control_before, minlength=len(control.sent))
-        limits = self.scenario.vessel.limits()
-        for j, name in enumerate(self.channels):
-            low, high = limits[name]
-            excess = np.abs(control.sent[:, j] - control.commands[:, j])
-            if count := int(steps[excess > SLACK * (high - low)].sum()):
-                found[name] = count
-        return found
 
     def follow_engine(self, state: State, sense: Sense, orders: Mapping[str, float]) -> None:
         """Take over what compiled code has done: the state, and the controller's last step.
@@ -237,13 +195,21 @@ class ControlLoop:
         with self.name_controller_in_errors() as controller:
             if goal.get(OFF):
                 controller.reset()
-                self._send_commands({})
+                self.send_commands({})
                 self._early = inf
                 return
-            self._send_commands(controller.step(self.sense, goal))
+            self.send_commands(controller.step(self.sense, goal))
             self._early = state.t + controller.time_to_extra_step(self.sense)
 
-    def _send_commands(self, commands: dict[str, float]) -> None:
+    def send_commands(self, commands: dict[str, float]) -> None:
+        """Send commands of the controller to the vessel, and note what was sent.
+
+        Args:
+            commands: Commands by channel; the others are neutral.
+
+        Raises:
+            BadInput: If a channel does not exist or a value is not finite.
+        """
         self.engine.command(commands)
         self._store_sent_commands()
 

@@ -81,6 +81,14 @@ class OpenWater(Stepper):
         self._record_step(length)
         self._mean[:] = self._record.mean[0]
 
+    def true_readings(self) -> Array:
+        """Return the readings (11,) of error-free instruments, in the order of `SENSE_FIELDS`.
+
+        The array is overwritten by the next call.
+        """
+        self._read_instruments()
+        return np.asarray(self._sensed[0])
+
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""
         self._read_instruments()

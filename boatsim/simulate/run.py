@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import monotonic
 from warnings import catch_warnings, simplefilter
 
@@ -10,6 +11,7 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.signals import Array
 from boatsim.recordings.table import Notes, Recording, SignalMissing
+from boatsim.simulate.block_stepper import BlockStepper
 from boatsim.simulate.camera_log import CameraLog
 from boatsim.simulate.control_loop import ControlLoop
 from boatsim.simulate.engine import Engine
@@ -119,8 +121,10 @@ class Simulation:
                 if options.pace:
                     # before the step, so that sensors and goals at its end are those of that time
                     options.pace.wait_until(self.time + self.engine.step, options.stop)
-                if not (self._may_leap and self._advance_block()):
+                if self._blocks is None:
                     self._advance()
+                else:
+                    self._advance_block(self._blocks)
                 if options.progress and self._loop.steps >= reported + PROGRESS:
                     options.progress(self.time)
                     reported = self._loop.steps
@@ -164,18 +168,18 @@ class Simulation:
             self._write_row()
         self._deliver_rows()
 
-    @property
-    def _may_leap(self) -> bool:
-        """Whether nothing has to be done or asked after every step."""
+    @cached_property
+    def _blocks(self) -> BlockStepper | None:
+        """Advances the run by many steps at once, if nothing has to be done after each of them."""
         options = self._options
-        return options.pace is None and options.finish is bool and not options.log_changes
+        if options.pace is not None or options.finish is not bool or options.log_changes:
+            return None
+        return BlockStepper.create_if_possible(self._loop)
 
-    def _advance_block(self) -> bool:
-        """Many steps at once, where that is possible; return whether there were any."""
+    def _advance_block(self, blocks: BlockStepper) -> None:
+        """Many steps at once, with their camera frames and rows."""
         before = self._loop.state
-        block = self._loop.advance_block(self._end, self._log.rows_due)
-        if block is None:
-            return False
+        block = blocks.advance(self._end, self._log.rows_due)
         if block.count:
             frames, steps = self._camera.take_frames_of_block(before, block)
             waiting = np.full(len(self._frames), -1)
@@ -190,7 +194,6 @@ class Simulation:
         if block.error is not None:
             raise block.error
         self._deliver_rows()
-        return True
 
     def _add_frames(self, frames: Array) -> None:
         """Keep the frames since the last row of the log, which shows the last of them."""

@@ -172,10 +172,10 @@ class RunLog:
         shown = rows < len(at)
         camera[rows[shown]] = np.roll(frames[shown, 1:], -len(CAMERA_POSE), axis=1)
         parts = [
-            t,
+            states[:, :1],
             states[:, self._motion_places],
             control.commands[after],
-            np.tile(list(self._measured.values()), (len(at), 1)),
+            np.tile(np.array(list(self._measured.values())), (len(at), 1)),
             control.sent[after],
             record.mean[at],
             control.sensed[after],
@@ -185,11 +185,11 @@ class RunLog:
         if self._winds:
             parts.append(record.air[at])
         if len(self._waves):
-            parts.append(np.asarray(self._waves.elevation(x, y, t)))
+            parts.append(np.asarray(self._waves.elevation(x, y, t))[:, None])
         if self._water_moves:
             parts.append(record.water[at])
-        parts += [np.zeros(len(at)), control.estimated[after], self._goals_at(t)]
-        self.table.append_rows(np.column_stack(parts).T)
+        parts += [np.zeros((len(at), 1)), control.estimated[after], self._goals_at(t)]
+        self.table.append_rows(parts)
 
     def _goals_at(self, times: Array) -> Array:
         """Goals (N, G) at several times [s]."""

@@ -10,7 +10,7 @@ STATE_SIZE = 1 + len(MeasuredMotion._fields)  # time and motion
 
 
 def make_step_record(program: Program, steps: int, periods: int) -> StepRecord:
-    """Return an empty record of steps of a vessel.
+    """Return a record of steps of a vessel, with arrays that are not filled yet.
 
     Args:
         program: The vessel's program.
@@ -22,9 +22,9 @@ def make_step_record(program: Program, steps: int, periods: int) -> StepRecord:
         done=np.zeros(2, dtype=np.int64),
         ends=np.zeros(periods, dtype=np.int64),
         logged=np.zeros(steps, dtype=np.int64),
-        states=np.zeros((steps, STATE_SIZE)),
-        mean=np.zeros((steps, len(program.vessel.actuators))),
-        force=np.zeros(forces),
-        air=np.zeros(forces),
-        water=np.zeros((steps, 2)),
+        states=np.empty((steps, STATE_SIZE)),
+        mean=np.empty((steps, len(program.vessel.actuators))),
+        force=np.empty(forces),
+        air=np.empty(forces),
+        water=np.empty((steps, 2)),
     )
