@@ -58,7 +58,9 @@ def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) 
         written: Text of each generated file of the program, by file name.
         classes: Classes of the effects whose laws the program calls.
     """
-    return _import_program(tuple(sorted(written.items())), frozenset(classes))
+    program = _import_program(tuple(sorted(written.items())), frozenset(classes))
+    _mark_as_used(Path(str(program.__file__)).parent)
+    return program
 
 
 @cache
@@ -91,8 +93,7 @@ def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) 
         shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
         _remove_unused_programs(folder)
-    with suppress(OSError):
-        os.utime(path)  # it is in use
+    _mark_as_used(path)
     return _import_package((path, *further), f"boatsim_program_{stamp}")
 
 
@@ -164,6 +165,11 @@ def _import_package(folders: tuple[Path, ...], name: str) -> ModuleType:
                 del sys.modules[known]
         raise
     return found
+
+
+def _mark_as_used(program: Path) -> None:
+    with suppress(OSError):
+        os.utime(program)
 
 
 def _remove_unused_programs(folder: Path) -> None:

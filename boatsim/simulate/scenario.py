@@ -4,7 +4,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
@@ -277,9 +277,9 @@ class Scenario:
         Args:
             times: Times (N,) [s].
         """
-        ends = np.searchsorted(times + GOAL_TOLERANCE, self._goal_begin_times)
-        starts = sorted({0, *ends.tolist()} - {len(times)})
-        for begin, end in zip(starts, [*starts[1:], len(times)], strict=True):
+        changes = np.searchsorted(times + GOAL_TOLERANCE, self._goal_begin_times)
+        bounds = sorted({0, *changes.tolist(), len(times)})
+        for begin, end in pairwise(bounds):
             at = bisect_right(self._goal_begin_times, times[begin] + GOAL_TOLERANCE) - 1
             if at >= 0 and self._split_goals[at][1]:
                 for row in range(begin, end):
