@@ -58,16 +58,16 @@ def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) 
         written: Text of each generated file of the program, by file name.
         classes: Classes of the effects whose laws the program calls.
     """
-    program = _import_program(tuple(sorted(written.items())), frozenset(classes))
-    _mark_as_used(Path(str(program.__file__)).parent)
+    program, folder = _import_program(tuple(sorted(written.items())), frozenset(classes))
+    _mark_as_used(folder)
     return program
 
 
 @cache
 def _import_program(
     written: tuple[tuple[str, str], ...], classes: frozenset[type[Effect]]
-) -> ModuleType:
-    """The program of these files; each is looked up once in a process."""
+) -> tuple[ModuleType, Path]:
+    """The program of these files and its folder; each is looked up once in a process."""
     copied = {}
     for path in sorted(KERNEL.glob("*.py")):
         if path.name not in (*SHARED, *GENERATORS, *WRITTEN):
@@ -75,8 +75,11 @@ def _import_program(
     own = {**dict(written), "__init__.py": EXPORTS}
     stamp = program_digest(copied | own, classes)
     if DEBUG:
-        return import_cached_package(own, f"{stamp}_debug", KERNEL)
-    return import_cached_package(copied | own, stamp)
+        stamp = f"{stamp}_debug"
+        program = import_cached_package(own, stamp, KERNEL)
+    else:
+        program = import_cached_package(copied | own, stamp)
+    return program, _program_folder(stamp)
 
 
 def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
@@ -87,8 +90,7 @@ def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) 
         stamp: Name that identifies the content and all that it depends on.
         further: Folders in which the package finds its other modules.
     """
-    folder = cache_folder()
-    path = folder / f"program_{stamp}"
+    folder, path = cache_folder(), _program_folder(stamp)
     if not _is_complete(files, path):
         shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
@@ -165,6 +167,10 @@ def _import_package(folders: tuple[Path, ...], name: str) -> ModuleType:
                 del sys.modules[known]
         raise
     return found
+
+
+def _program_folder(stamp: str) -> Path:
+    return cache_folder() / f"program_{stamp}"
 
 
 def _mark_as_used(program: Path) -> None:
