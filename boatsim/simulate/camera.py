@@ -63,12 +63,15 @@ class Camera(CheckedParameters):
         return np.array([complex(*place) for place in self.marks.values()])
 
     @cached_property
-    def _weights(self) -> tuple[Array, Array]:
-        """Weights (M,) of the marks in the position of the CG, and in the direction of the bow."""
+    def _weights(self) -> Array:
+        """Weights (2, M) of the marks in the position of the CG and the direction of the bow."""
         off = self.mark_positions - self.mark_positions.mean()
         turn = off.conj() / (np.abs(off) ** 2).sum()
-        return 1.0 / len(off) - self.mark_positions.mean() * turn, turn
+        return np.array([1.0 / len(off) - self.mark_positions.mean() * turn, turn])
 
+    # Products of complex numbers are computed by their parts: numpy multiplies complex arrays of
+    # some shapes with fused operations and of others without, and a frame must not depend on the
+    # number of frames.
     def measured_mark_positions(self, place: Array, psi: Array, noise: Array) -> Array:
         """Return the positions of the hull marks that the camera measures, with noise.
 
@@ -80,9 +83,19 @@ class Camera(CheckedParameters):
         Returns:
             Complex positions (..., M) [m].
         """
-        shaken = self.mark_sd * (noise[..., 0::2] + 1j * noise[..., 1::2])
-        turned = _product(np.exp(1j * np.asarray(psi))[..., None], self.mark_positions)
-        return np.asarray(np.asarray(place)[..., None] + turned + shaken)
+        places = np.asarray(place)
+        ahead, starboard = self._measured_marks(places.real, places.imag, psi, noise)
+        return np.asarray(ahead + 1j * starboard)
+
+    def _measured_marks(self, x: Array, y: Array, psi: Array, noise: Array) -> tuple[Array, Array]:
+        """Coordinates (..., M) of the marks that the camera measures [m]."""
+        bow = np.exp(1j * np.asarray(psi))[..., None]
+        c, s, marks = bow.real, bow.imag, self.mark_positions
+        turned = c * marks.real - s * marks.imag, c * marks.imag + s * marks.real
+        return (
+            x[..., None] + turned[0] + self.mark_sd * noise[..., 0::2],
+            y[..., None] + turned[1] + self.mark_sd * noise[..., 1::2],
+        )
 
     def fit_pose(self, seen: Array) -> tuple[Array, Array]:
         """Return the pose of the vessel that fits measured positions of its hull marks best.
@@ -93,8 +106,8 @@ class Camera(CheckedParameters):
         Returns:
             Complex position (...) of the CG [m] and heading (...) [rad].
         """
-        centre, _ = self._weights
-        return _product(seen, centre).sum(axis=-1), self.fit_heading(seen)
+        x, y, psi = self._fit(seen.real, seen.imag)
+        return np.asarray(x + 1j * y), psi
 
     def fit_heading(self, seen: Array) -> Array:
         """Return the heading of the pose that fits measured positions of hull marks best.
@@ -105,8 +118,14 @@ class Camera(CheckedParameters):
         Returns:
             Heading (...) [rad].
         """
-        _, turn = self._weights
-        return np.asarray(np.angle(_product(seen, turn).sum(axis=-1)))
+        return self._fit(seen.real, seen.imag)[2]
+
+    def _fit(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
+        """Position (...) of the CG [m] and heading (...) [rad] that fit marks (..., M) best."""
+        weights = self._weights.reshape(2, *(1,) * (x.ndim - 1), -1)
+        along = (x * weights.real - y * weights.imag).sum(axis=-1)
+        across = (x * weights.imag + y * weights.real).sum(axis=-1)
+        return along[0], across[0], np.arctan2(across[1], along[1])
 
     def pose_noise(self) -> dict[str, float]:
         """Return the standard deviations of a pose measured by the camera.
@@ -143,12 +162,10 @@ class Camera(CheckedParameters):
             Rows (k, 4 + 2 M): time, x, y [m], psi [rad], then x and y of each mark [m].
         """
         rows = np.empty((len(t), 4 + noise.shape[1]))
-        marks = self.measured_mark_positions(
-            poses[:, 0] + 1j * poses[:, 1], np.ascontiguousarray(poses[:, 2]), noise
-        )
-        place, psi = self.fit_pose(marks)
-        rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3] = t, place.real, place.imag, psi
-        rows[:, 4:] = marks.view(float)
+        rows[:, 0] = t
+        marks = self._measured_marks(poses[:, 0], poses[:, 1], poses[:, 2].copy(), noise)
+        rows[:, 1], rows[:, 2], rows[:, 3] = self._fit(*marks)
+        rows[:, 4::2], rows[:, 5::2] = marks
         return rows
 
     def is_frame_due(self, number: int, t: float) -> bool:
@@ -195,15 +212,6 @@ class Camera(CheckedParameters):
         w = np.where(t1 > t0, np.clip((t - t0) / lengths, 0.0, 1.0), 1.0)[:, None]
         poses = before[:, 1:] + w * (after[:, 1:] - before[:, 1:])
         return self.take_frames(t, poses, rng.standard_normal((len(t), 2 * len(self.marks))))
-
-
-def _product(a: Array, b: Array) -> Array:
-    """Product of complex numbers, computed without the fused operations that some processors have.
-
-    numpy uses these for some shapes of arrays and not for others.
-    """
-    real = a.real * b.real - a.imag * b.imag
-    return np.asarray(real + 1j * (a.real * b.imag + a.imag * b.real))
 
 
 def make_camera(vessel: Vessel, settings: Mapping[str, object]) -> Camera:

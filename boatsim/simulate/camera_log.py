@@ -73,14 +73,16 @@ class CameraLog:
         """
         if not self._camera.is_frame_due(self._number, after.t):
             return self._no_frames
-        numbers, steps = self._camera.due_frames(self._number, np.array([after.t]))
-        poses = np.array([before, after])[:, TIMED_POSE]
-        frames = self._camera.take_frames_between(
-            numbers, poses[steps], poses[steps + 1], self._generator
-        )
+        end = self._number + 1
+        while self._camera.is_frame_due(end, after.t):
+            end += 1
+        numbers = np.arange(self._number, end)
+        begin = np.array([[before.t, before.x, before.y, before.psi]] * len(numbers))
+        end_of_step = np.array([[after.t, after.x, after.y, after.psi]] * len(numbers))
+        frames = self._camera.take_frames_between(numbers, begin, end_of_step, self._generator)
         held, seconds = np.array(self._commands), np.array(self._seconds)
         ends = np.full(len(numbers), len(seconds))
-        self._log_frames(frames, np.array([commands])[steps], held, seconds, ends)
+        self._log_frames(frames, np.array([commands] * len(numbers)), held, seconds, ends)
         self._commands.clear()
         self._seconds.clear()
         return frames
