@@ -1,4 +1,4 @@
-"""Many steps of a run in open water at once: the controller acts in between, each step is recorded.
+"""Blocks of steps of a run in open water: the controller acts in between, each step is recorded.
 
 A compiled controller acts in compiled code too. The results are those of `ControlLoop`, which takes
 one step after another, to the last bit: both call the same compiled functions.
@@ -33,9 +33,10 @@ from boatsim.simulate.step_block import (
 from boatsim.simulate.step_record import make_step_record
 from boatsim.simulate.stepper import State
 
-# Steps of a block, after which a run can be interrupted: milliseconds, or a second in waves of many
-# components. Shorter blocks cost more time for each step.
-MOST_STEPS = 3000
+# Steps of a block, after which a run can be interrupted: milliseconds, or half a second in waves of
+# many components. Shorter blocks cost more time for each step, and so do longer ones: beyond some
+# hundred kilobytes the operating system takes the memory of the arrays back after each block.
+MOST_STEPS = 1500
 MOST_STEPS_UNTIL = 1000  # the same where the motion may end the run, so that few are in vain
 
 
@@ -54,7 +55,7 @@ class Advanced(NamedTuple):
 
 
 class BlockStepper:
-    """Advances the control loop of a run in open water by many steps at once."""
+    """Advances the control loop of a run in open water by blocks of steps."""
 
     def __init__(self, loop: ControlLoop, engine: OpenWater) -> None:
         """Create the record of the steps; use `create_if_possible`, which checks the conditions.
@@ -71,7 +72,7 @@ class BlockStepper:
 
     @classmethod
     def create_if_possible(cls, loop: ControlLoop) -> "BlockStepper | None":
-        """Return an object that advances a control loop by many steps at once, or None.
+        """Return an object that advances a control loop by blocks of steps, or None.
 
         It is possible in open water if the controller acts only once per period.
 

@@ -170,14 +170,14 @@ class Simulation:
 
     @cached_property
     def _blocks(self) -> BlockStepper | None:
-        """Advances the run by many steps at once, if nothing has to be done after each of them."""
+        """Advances the run by blocks of steps, if nothing has to be done after each of them."""
         options = self._options
         if options.pace is not None or options.finish is not bool or options.log_changes:
             return None
         return BlockStepper.create_if_possible(self._loop)
 
     def _advance_block(self, blocks: BlockStepper) -> None:
-        """Many steps at once, with their camera frames and rows."""
+        """Advance by a block of steps, with their camera frames and rows."""
         before = self._loop.state
         block = blocks.advance(self._end, self._log.rows_due)
         if block.count:

@@ -165,29 +165,32 @@ class RunLog:
         at = np.flatnonzero(block.logged)
         if not len(at):
             return
-        states, after = block.states[at], block.control_after[at]
+        rows: slice | NDArray[np.int64] = at
+        if len(at) == block.count:
+            rows = slice(block.count)  # a view costs nothing
+        states, after = block.states[rows], block.control_after[rows]
         t, x, y = states[:, 0], states[:, PLACE[0]], states[:, PLACE[1]]
         camera = np.full((len(at), self._camera_columns), nan)
-        rows = np.searchsorted(at, steps)  # the first row from each frame on
-        shown = rows < len(at)
-        camera[rows[shown]] = np.roll(frames[shown, 1:], -len(CAMERA_POSE), axis=1)
+        first = np.searchsorted(at, steps)  # the first row from each frame on
+        shown = first < len(at)
+        camera[first[shown]] = np.roll(frames[shown, 1:], -len(CAMERA_POSE), axis=1)
         parts = [
             states[:, :1],
             states[:, self._motion_places],
             control.commands[after],
             np.tile(np.array(list(self._measured.values())), (len(at), 1)),
             control.sent[after],
-            record.mean[at],
+            record.mean[rows],
             control.sensed[after],
             camera,
-            record.force[at],
+            record.force[rows],
         ]
         if self._winds:
-            parts.append(record.air[at])
+            parts.append(record.air[rows])
         if len(self._waves):
             parts.append(np.asarray(self._waves.elevation(x, y, t))[:, None])
         if self._water_moves:
-            parts.append(record.water[at])
+            parts.append(record.water[rows])
         parts += [np.zeros((len(at), 1)), control.estimated[after], self._goals_at(t)]
         self.table.append_rows(parts)
 

@@ -1,4 +1,4 @@
-"""Many steps of a run as arrays, from which rows of the log and camera frames are made at once."""
+"""Consecutive steps of a run as arrays, for the rows of the log and the camera frames."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class BlockPlan:
 
 
 class ControlValues(NamedTuple):
-    """What the controller received and sent at several control steps, one row each.
+    """Readings, commands and estimates of a controller at several control steps, one row each.
 
     The first row belongs to the last control step before the block.
 
