@@ -57,6 +57,9 @@ class Camera(CheckedParameters):
                 f"Camera.marks = {dict(self.marks)}; a heading needs two marks in different places"
             )
 
+    def __hash__(self) -> int:
+        return hash((self.rate, self.mark_sd, *self.marks, *map(tuple, self.marks.values())))
+
     @cached_property
     def mark_positions(self) -> Array:
         """Positions (M,) of the camera's marks in hull axes, ahead + i starboard [m]."""
