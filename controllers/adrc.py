@@ -97,13 +97,12 @@ class Adrc(LagJoystick):
     law: ClassVar = law
     memory_type: ClassVar = REMEMBERS
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw and surge as a moment and a force."""
-        memory = self.single_memory_record
         yaw, surge = memory["yaw"]["disturbance"], memory["surge"]["disturbance"]
         return {
-            "sigma_yaw_Nm": Estimate(self.inertia * float(yaw), nan, nan),
-            "sigma_surge_N": Estimate(self.mass * float(surge), nan, nan),
+            "sigma_yaw_Nm": Estimate(self.inertia * yaw, nan, nan),
+            "sigma_surge_N": Estimate(self.mass * surge, nan, nan),
         }
 
     def axis_law(self, axis: str) -> AxisLaw:

@@ -64,9 +64,9 @@ class FeedForwardSpeed(CompiledController):
     linear: float = param(0.1926, low=0.0, high=10.0, unit="1/s", words="assumed drag, Table 3")
     quadratic: float = param(0.0035, low=0.0, high=10.0, unit="1/m", words="assumed drag, Table 3")
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the set point of the speed and the reference speed, for the log of a run."""
         return {
-            "reference_goal_mps": Estimate(float(self.single_memory_record["goal"]), nan, nan),
-            "reference_u_mps": Estimate(float(self.single_memory_record["model"]), nan, nan),
+            "reference_goal_mps": Estimate(memory["goal"], nan, nan),
+            "reference_u_mps": Estimate(memory["model"], nan, nan),
         }

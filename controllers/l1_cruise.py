@@ -131,19 +131,18 @@ class L1Cruise(CompiledController):
         )
         return add_nested_records(super().settings_array(count), loop=loop)
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the adaptive estimates with their bounds, and the reference speed, for the log.
 
         They are theta, sigma and omega of the model of the class.
         """
-        m = self.single_memory_record
-        theta, sigma, omega = m["loop"]["estimates"].tolist()
+        found = memory["loop"]["estimates"]
         return {
-            "theta_1ps": Estimate(theta, *THETA),
-            "sigma_mps2": Estimate(sigma, *SIGMA),
-            "omega": Estimate(omega, *OMEGA),
-            "reference_goal_mps": Estimate(float(m["goal"]), nan, nan),
-            "reference_u_mps": Estimate(float(m["model"]), nan, nan),
+            "theta_1ps": Estimate(found[..., 0], *THETA),
+            "sigma_mps2": Estimate(found[..., 1], *SIGMA),
+            "omega": Estimate(found[..., 2], *OMEGA),
+            "reference_goal_mps": Estimate(memory["goal"], nan, nan),
+            "reference_u_mps": Estimate(memory["model"], nan, nan),
         }
 
     def filtered_uncertainty(self) -> LinearSystem:

@@ -173,18 +173,17 @@ class L1Heading(CompiledController):
             loop["by"][:, 2] = 3
         return add_nested_records(super().settings_array(count), loop=loop)
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the adaptive estimates with their bounds, the set point and the reference heading.
 
         The estimates are theta, sigma and omega of the model of the class.
         """
-        m = self.single_memory_record
-        theta_1, theta_2, sigma, omega = m["loop"]["estimates"].tolist()
+        goal, found = memory["goal"], memory["loop"]["estimates"]
         return {
-            "theta_1": Estimate(theta_1, *THETA_1),
-            "theta_2": Estimate(theta_2, *THETA_2),
-            "sigma_radps2": Estimate(sigma, *SIGMA),
-            "omega_1ps2": Estimate(omega, *OMEGA),
-            "reference_goal_rad": Estimate(float(m["goal"]), nan, nan),
-            "reference_psi_rad": Estimate(float(m["goal"] - m["error"]), nan, nan),
+            "theta_1": Estimate(found[..., 0], *THETA_1),
+            "theta_2": Estimate(found[..., 1], *THETA_2),
+            "sigma_radps2": Estimate(found[..., 2], *SIGMA),
+            "omega_1ps2": Estimate(found[..., 3], *OMEGA),
+            "reference_goal_rad": Estimate(goal, nan, nan),
+            "reference_psi_rad": Estimate(goal - memory["error"], nan, nan),
         }

@@ -133,13 +133,12 @@ class L1Joystick(LagBasedController, AdaptiveJoystick):
             quick = POLE_SHARE * bandwidth_for_delay(self.known_delay())
             self.response_pole = max(self.pole, min(quick, FASTEST_RESPONSE))
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw and surge, and the response to the stick."""
-        memory = self.single_memory_record
         return {
-            **super().estimates(),
-            "reference_u_mps": Estimate(float(memory["u"]), nan, nan),
-            "reference_r_radps": Estimate(float(memory["r"]), nan, nan),
+            **super().estimates_from(memory),
+            "reference_u_mps": Estimate(memory["u"], nan, nan),
+            "reference_r_radps": Estimate(memory["r"], nan, nan),
         }
 
     def operating_points(self) -> tuple[OperatingPoint, ...]:

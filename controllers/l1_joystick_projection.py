@@ -261,7 +261,7 @@ class L1JoystickProjection(Outboards, CompiledController):
     feed_forward_as_published: bool = False
     input_as_published: bool = False
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return all adaptive estimates with their bounds, and the predicted states."""
         bounds = {
             "omega": (self.omega_low, self.omega_high),
@@ -269,12 +269,12 @@ class L1JoystickProjection(Outboards, CompiledController):
             "theta_r": (self.theta_low, self.theta_high),
             "sigma": (self.sigma_low, self.sigma_high),
         }
-        found, memory = {}, self.single_memory_record
+        found: dict[str, Estimate] = {}
         for axis, state in (("surge", "u_mps"), ("sway", "v_mps"), ("yaw", "r_radps")):
             for name, (low, high) in bounds.items():
-                value = float(memory[axis]["unknown"][name])
+                value = memory[axis]["unknown"][name]
                 found[f"{name}_{axis}"] = Estimate(value, low, high)
-            found[f"predicted_{state}"] = Estimate(float(memory[axis]["predicted"]), nan, nan)
+            found[f"predicted_{state}"] = Estimate(memory[axis]["predicted"], nan, nan)
         return found
 
     def largest_goals(self) -> Mapping[str, float]:

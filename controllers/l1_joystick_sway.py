@@ -111,13 +111,13 @@ class L1JoystickSway(AdaptiveJoystick):
         0.3, low=0.01, high=5.0, unit="N", words="least thrust difference while swaying"
     )
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw, surge and sway, and the reference motion."""
-        sway = self.single_memory_record["sway"]
+        sway = memory["sway"]
         return {
-            **super().estimates(),
-            "sigma_sway_N": Estimate(float(sway["sigma"]), nan, nan),
-            "reference_v_mps": Estimate(float(sway["model"]), nan, nan),
+            **super().estimates_from(memory),
+            "sigma_sway_N": Estimate(sway["sigma"], nan, nan),
+            "reference_v_mps": Estimate(sway["model"], nan, nan),
         }
 
     def feedback_loops(self) -> tuple[LoopChannel, ...]:

@@ -142,18 +142,15 @@ class L1Thesis(CompiledController):
     )
     feed_forward_as_published: bool = False
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return all adaptive estimates with their bounds, and the predicted states.
 
         The states are sway velocity and yaw rate.
         """
-        _, vh, rh, *_, sway, yaw = self.single_memory_record.item()
-        found = {
-            f"{name}_{axis}": Estimate(value, *bounds)
-            for axis, row in (("sway", sway), ("yaw", yaw))
-            for (name, bounds), value in zip(BOUNDS.items(), row, strict=False)
-        }
-        return found | {
-            "reference_v_mps": Estimate(vh, nan, nan),
-            "reference_r_radps": Estimate(rh, nan, nan),
-        }
+        found: dict[str, Estimate] = {}
+        for axis in ("sway", "yaw"):
+            for name, bounds in BOUNDS.items():
+                found[f"{name}_{axis}"] = Estimate(memory[axis][name], *bounds)
+        found["reference_v_mps"] = Estimate(memory["vh"], nan, nan)
+        found["reference_r_radps"] = Estimate(memory["rh"], nan, nan)
+        return found

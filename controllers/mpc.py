@@ -137,13 +137,12 @@ class Mpc(LagJoystick):
             if getattr(self, f"{name}_gain") is UNSET:
                 setattr(self, f"{name}_gain", value)
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw and surge as a moment and a force."""
-        memory = self.single_memory_record
         yaw, surge = memory["yaw"]["disturbance"], memory["surge"]["disturbance"]
         return {
-            "sigma_yaw_Nm": Estimate(self.inertia * float(yaw), nan, nan),
-            "sigma_surge_N": Estimate(self.mass * float(surge), nan, nan),
+            "sigma_yaw_Nm": Estimate(self.inertia * yaw, nan, nan),
+            "sigma_surge_N": Estimate(self.mass * surge, nan, nan),
         }
 
     def axis_law(self, axis: str) -> AxisLaw:

@@ -91,12 +91,9 @@ class PdHeading(CompiledController):
         radians(15.0), low=0.0, high=1.5, unit="rad", words="largest jet deflection to either side"
     )
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the set point of the heading and the reference heading, for the log of a run."""
-        goal, error = (
-            float(self.single_memory_record["goal"]),
-            float(self.single_memory_record["error"]),
-        )
+        goal, error = memory["goal"], memory["error"]
         return {
             "reference_goal_rad": Estimate(goal, nan, nan),
             "reference_psi_rad": Estimate(goal - error, nan, nan),

@@ -13,7 +13,7 @@ import numpy as np
 from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
-from boatsim.control.base import Controller, Sense
+from boatsim.control.base import Controller, Estimate, Sense
 from boatsim.control.native_law import ONE, single_boat_law
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import lean, merged, unlocked
@@ -145,6 +145,24 @@ class CompiledController(Controller):
             self._run_law = single_boat_law(type(self).law, records)
         self._run_law()
         return dict(zip(self.channels(), self._sent[0].item(), strict=True))
+
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
+        """Return the estimates of the controller for one state of its memory, or for several.
+
+        Controllers with estimates override it.
+
+        Args:
+            memory: One record of the type `memory_type`, or an array of such records; its fields
+                are numbers, or arrays with a number for each record.
+        """
+        return {}
+
+    def estimates(self) -> dict[str, Estimate]:
+        """Return the controller's present estimates, for the log of a run."""
+        found: dict[str, Estimate] = {}
+        for name, (value, low, high) in self.estimates_from(self.single_memory_record).items():
+            found[name] = Estimate(float(value), float(low), float(high))
+        return found
 
     @property
     def memory(self) -> Records:

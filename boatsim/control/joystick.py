@@ -178,14 +178,14 @@ class AdaptiveJoystick(Outboards, CompiledController):
         1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
     )
 
-    def estimates(self) -> dict[str, Estimate]:
+    def estimates_from(self, memory: Any) -> dict[str, Estimate]:
         """Return the estimated disturbances of yaw and surge, and the reference motion."""
-        yaw, surge = self.single_memory_record["yaw"], self.single_memory_record["surge"]
+        yaw, surge = memory["yaw"], memory["surge"]
         return {
-            "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
-            "sigma_surge_N": Estimate(float(surge["sigma"]), nan, nan),
-            "reference_u_mps": Estimate(float(surge["model"]), nan, nan),
-            "reference_r_radps": Estimate(float(yaw["model"]), nan, nan),
+            "sigma_yaw_Nm": Estimate(yaw["sigma"], nan, nan),
+            "sigma_surge_N": Estimate(surge["sigma"], nan, nan),
+            "reference_u_mps": Estimate(surge["model"], nan, nan),
+            "reference_r_radps": Estimate(yaw["model"], nan, nan),
         }
 
     def largest_goals(self) -> Mapping[str, float]:

@@ -17,10 +17,10 @@ from boatsim.errors import BadInput
 from boatsim.files import MAX_TOML_BYTES, replace_file
 from boatsim.physics.base import Array, Force
 from boatsim.physics.signals import AXES, COMPONENTS, MeasuredMotion, motion_signals
-from boatsim.simulate.control_loop import TIME_TOLERANCE
 from boatsim.simulate.engine import State
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.run import build_engine
+from boatsim.simulate.run_end import TIME_TOLERANCE
 from boatsim.simulate.scenario import OFF
 from boatsim.view.scene import Scene
 from boatsim.webassembly.compiler import WasmCompiler

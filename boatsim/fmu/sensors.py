@@ -15,7 +15,7 @@ from boatsim.fmu.variables import Variable
 from boatsim.fmu.ziggurat import ziggurat_source
 from boatsim.physics.content import snake_case
 from boatsim.physics.particulars import GRAVITY
-from boatsim.simulate.run_log import SENSED
+from boatsim.simulate.control_columns import SENSED
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.sensing import Sensor, Sensors
 from boatsim.simulate.sensors.compass import COMPENSATIONS, Compass

@@ -12,7 +12,7 @@ from boatsim.simulate.camera_metric import (
     CameraFrames,
     CameraMetricSet,
     first_frame_where,
-    sample_mark_noise,
+    headings_from_noise,
 )
 from boatsim.simulate.metric import describe_closest_value
 
@@ -81,10 +81,7 @@ class Sway(CameraMetricSet):
             frames: Number of frames.
             camera: The camera.
         """
-        still = np.zeros(frames)
-        marks = camera.measured_mark_positions(still, still, sample_mark_noise(frames, camera))
-        _, psi = camera.fit_pose(marks)
-        return self.yaw_rate_metrics(psi, 1.0 / self.scored)
+        return self.yaw_rate_metrics(headings_from_noise(frames, camera), 1.0 / self.scored)
 
     def yaw_rate_metrics(self, psi: Array, dt: float) -> dict[str, Array]:
         """Return norms of the yaw rate of a sequence of headings, and the heading change over it.

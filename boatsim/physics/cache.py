@@ -20,6 +20,7 @@ import tempfile
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from inspect import getsourcefile
 from pathlib import Path
 from types import ModuleType
@@ -44,6 +45,7 @@ from .filter import *
 from .inertia import *
 from .laws import *
 from .motion import *
+from .recording import *
 from .run import *
 '''
 KEPT = 90 * 86400.0  # [s] time after the last use of a program until it is removed
@@ -56,15 +58,28 @@ def import_program(written: Mapping[str, str], classes: Iterable[type[Effect]]) 
         written: Text of each generated file of the program, by file name.
         classes: Classes of the effects whose laws the program calls.
     """
+    program, folder = _import_program(tuple(sorted(written.items())), frozenset(classes))
+    _mark_as_used(folder)
+    return program
+
+
+@cache
+def _import_program(
+    written: tuple[tuple[str, str], ...], classes: frozenset[type[Effect]]
+) -> tuple[ModuleType, Path]:
+    """The program of these files and its folder; each is looked up once in a process."""
     copied = {}
     for path in sorted(KERNEL.glob("*.py")):
         if path.name not in (*SHARED, *GENERATORS, *WRITTEN):
             copied[path.name] = path.read_text(encoding="utf-8")
-    own = {**written, "__init__.py": EXPORTS}
+    own = {**dict(written), "__init__.py": EXPORTS}
     stamp = program_digest(copied | own, classes)
     if DEBUG:
-        return import_cached_package(own, f"{stamp}_debug", KERNEL)
-    return import_cached_package(copied | own, stamp)
+        stamp = f"{stamp}_debug"
+        program = import_cached_package(own, stamp, KERNEL)
+    else:
+        program = import_cached_package(copied | own, stamp)
+    return program, _program_folder(stamp)
 
 
 def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
@@ -75,14 +90,12 @@ def import_cached_package(files: Mapping[str, str], stamp: str, *further: Path) 
         stamp: Name that identifies the content and all that it depends on.
         further: Folders in which the package finds its other modules.
     """
-    folder = cache_folder()
-    path = folder / f"program_{stamp}"
+    folder, path = cache_folder(), _program_folder(stamp)
     if not _is_complete(files, path):
         shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
         _remove_unused_programs(folder)
-    with suppress(OSError):
-        os.utime(path)  # it is in use
+    _mark_as_used(path)
     return _import_package((path, *further), f"boatsim_program_{stamp}")
 
 
@@ -154,6 +167,15 @@ def _import_package(folders: tuple[Path, ...], name: str) -> ModuleType:
                 del sys.modules[known]
         raise
     return found
+
+
+def _program_folder(stamp: str) -> Path:
+    return cache_folder() / f"program_{stamp}"
+
+
+def _mark_as_used(program: Path) -> None:
+    with suppress(OSError):
+        os.utime(program)
 
 
 def _remove_unused_programs(folder: Path) -> None:

@@ -32,6 +32,7 @@ from boatsim.physics.kernel.records import (
     Measurements,
     PassArrays,
     PassOptions,
+    StepRecord,
     VesselNumbers,
     VesselState,
 )
@@ -61,6 +62,7 @@ class CompiledProgram(Protocol):
     HAS_TIME_TO_DISCONTINUITY: (
         bool  # whether the signal of a channel may jump or bend while its command is held
     )
+    HAS_AIR_WRENCH: bool  # whether an effect is a force of the air
     HAS_ADVANCE_MOTION_MEMORY: bool  # whether an effect remembers the motion of the hull
     SHORTEST: float  # [s] shortest part of a step
     ENOUGH: float  # [s] remainder of a step that is neglected
@@ -115,6 +117,11 @@ class CompiledProgram(Protocol):
         self, t: float, s: Array, act: Array, at: np.int64, p: Array, on: Array
     ) -> tuple[float, ...]:
         """Return the sum (NQ,) of the forces of all effects in body axes [N, N m]."""
+
+    def air_body_force(
+        self, t: float, s: Array, act: Array, at: np.int64, p: Array, on: Array
+    ) -> tuple[float, ...]:
+        """Return the sum (NQ,) of the forces of the air in body axes [N, N m]."""
 
     def acceleration_jacobian(
         self,
@@ -202,6 +209,12 @@ class CompiledProgram(Protocol):
         """Write time and noiseless instrument readings of several vessels to felt (B, 11).
 
         Only the rows `boats` are written.
+        """
+
+    def record_steps(self, fleet: FleetArrays, dt: float, record: StepRecord) -> None:
+        """Simulate the first vessel over the steps of its next period and record each of them.
+
+        The steps have a length of dt [s].
         """
 
     # Recordings

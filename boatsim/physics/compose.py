@@ -6,7 +6,7 @@ The text is meant to be read: `python -m boatsim.physics.program VESSEL` prints 
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from inspect import getsourcefile
 from itertools import chain
 from math import cos, sin
@@ -28,7 +28,8 @@ from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.vessel import Vessel
 
 
-def effect_kinds() -> list[type[EffectKind]]:
+@cache
+def effect_kinds() -> tuple[type[EffectKind], ...]:
     """Return the base classes of all kinds of effects (force, inertia, channel, ...).
 
     There is one for each file of `boatsim/physics/kinds`.
@@ -44,7 +45,7 @@ def effect_kinds() -> list[type[EffectKind]]:
             )
             if is_kind and value.__module__ == module.__name__:
                 found.append(value)
-    return found
+    return tuple(found)
 
 
 class Composition:
@@ -287,9 +288,8 @@ class Composition:
         used: set[str] = set()
         constants = [f"HELD, MEMORY = {max(len(self.law_signals), 1)}, {max(self.memory_size, 1)}"]
         constants.append(f"CANDIDATES = {len(self.effects) - len(self.vessel.effects)}")
-        everything = effect_kinds()
-        for part in chain.from_iterable(kind.parts for kind in everything):
-            body, has_effects = self._function_lines(part, everything)
+        for part in chain.from_iterable(kind.parts for kind in effect_kinds()):
+            body, has_effects = self._function_lines(part)
             head = f"@{part.compiled}\ndef {part.name}({part.arguments}):\n"
             lines = [*body, f"return {part.result}".rstrip()]
             functions.append(head + indent("\n".join(lines), "    ") + "\n\n")
@@ -326,19 +326,23 @@ class Composition:
                     _check_compiled(type(effect), law)
                     yield f"{law}{i} = compile_shared_law(E[{i}].{law})"
 
-    def _function_lines(
-        self, part: ProgramFunction, everything: Sequence[type[EffectKind]]
-    ) -> tuple[list[str], bool]:
+    @cached_property
+    def _kinds_of_effects(self) -> list[list[type[EffectKind]]]:
+        """Kinds to which each effect belongs."""
+        found: list[list[type[EffectKind]]] = []
+        for effect in self.effects:
+            found.append([kind for kind in effect_kinds() if isinstance(effect, kind)])
+        return found
+
+    def _function_lines(self, part: ProgramFunction) -> tuple[list[str], bool]:
         """Lines of a part, and whether any effect contributes to it."""
         body, has_effects = list(part.begin), False
         for station in part.stations(self):
             body += station.begin
             for i in self._effect_order:
-                effect = self.effects[i]
                 lines: list[str] = []
-                for kind in everything:
-                    if isinstance(effect, kind):
-                        lines += kind.program_lines(part, station, i, self)
+                for kind in self._kinds_of_effects[i]:
+                    lines += kind.program_lines(part, station, i, self)
                 has_effects = has_effects or bool(lines)
                 if lines and i >= len(self.vessel.effects):  # a candidate has a switch
                     lines = [f"if on[{i}] != 0.0:", *map("    ".__add__, lines)]

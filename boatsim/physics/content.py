@@ -62,7 +62,7 @@ def shipped_content_names(kind: str) -> list[str]:
     if kind == "effect":
         return sorted(_effect_files())
     if kind in PACKAGES:
-        return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
+        return list(_module_names(kind))
     folder = content_root() / KINDS[kind]
     if kind == "vessel":
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
@@ -74,6 +74,12 @@ def shipped_content_names(kind: str) -> list[str]:
 def _package(kind: str) -> Path:
     """Folder of the modules of a kind."""
     return Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
+
+
+@cache
+def _module_names(kind: str) -> list[str]:
+    """Names of the modules of a kind."""
+    return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
 
 
 @cache

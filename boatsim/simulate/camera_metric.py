@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,6 +183,24 @@ def sample_mark_noise(frames: int, camera: Camera) -> Array:
     """
     shape = (NOISE_SAMPLES, frames, 2 * len(camera.marks))
     return np.random.default_rng(0).standard_normal(shape)
+
+
+@lru_cache(maxsize=100)
+def headings_from_noise(frames: int, camera: Camera) -> Array:
+    """Return headings that a camera measures of a vessel at rest with a heading of 0.
+
+    They are computed once for a sweep of runs with as many frames.
+
+    Args:
+        frames: Number of frames.
+        camera: The camera.
+
+    Returns:
+        Headings (NOISE_SAMPLES, frames) [rad], which must not be changed.
+    """
+    still = np.zeros(frames)
+    marks = camera.measured_mark_positions(still, still, sample_mark_noise(frames, camera))
+    return camera.fit_heading(marks)
 
 
 def first_frame_where(reached: NDArray[np.bool_], least: int = 0) -> int | None:

@@ -7,6 +7,7 @@ pointers, so that it is compiled once for each kind of controller, whatever vess
 from functools import cache
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 from numba import types
 
@@ -14,7 +15,7 @@ from boatsim.physics.commands import SLACK
 from boatsim.physics.compiler_internals import FunctionPointer, NativePointer
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.compiling import merged, unlocked
-from boatsim.physics.kernel.records import FleetArrays
+from boatsim.physics.kernel.records import FleetArrays, StepRecord
 from boatsim.physics.native.calls import NativeFunction
 from boatsim.physics.signals import Array
 from boatsim.simulate.sensing import add_sensor_errors
@@ -29,12 +30,10 @@ class Call(NamedTuple):
 
 
 class Periods(NamedTuple):
-    """Number, length and order of the control periods in one call of the compiled loop."""
+    """Number and length of the control periods in one call of the compiled loop."""
 
-    law_first: bool  # each period begins with the law; else it ends with it
     number: int
     steps: int  # integration steps of a period
-    dt: float  # [s] integration step
 
 
 class Control(NamedTuple):
@@ -70,7 +69,6 @@ class Orders(NamedTuple):
     low: Array  # (inputs,) lowest and
     high: Array  # (inputs,) highest value of each input
     saturated: Array  # (n, inputs) number of steps in which more was ordered than the range allows
-    total: Array  # (n, inputs) integral of the commands in force over time
 
 
 class Loop(NamedTuple):
@@ -82,6 +80,15 @@ class Loop(NamedTuple):
     orders: Orders
 
 
+class History(NamedTuple):
+    """Arrays of what a controller received, sent and remembers after each of several periods."""
+
+    felt: Array  # (periods, 11) sensor readings
+    orders: Array  # (periods, orders) commands as sent
+    commands: Array  # (periods, inputs) commands in force
+    memory: Array  # (periods, M) numbers of the controller's memory
+
+
 Boats = types.Array(types.int64, 1, "C")
 Row = types.Array(types.float64, 1, "C")
 Rows = types.Array(types.float64, 2, "C")
@@ -89,7 +96,10 @@ FLEET = types.NamedTuple([Row, Rows, Rows, Rows, Rows, Rows, Row, Rows, Row], Fl
 FEEL = types.void(Boats, FLEET, Rows)  # `read_instruments_of_boats` of a program
 ADVANCE = types.void(Boats, FLEET, types.float64, types.int64)  # `advance_boats` of a program
 WORDS = types.float64(types.int64, types.int64)  # of functions in C, `native.exports`
-PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float64], Periods)
+RECORD = types.NamedTuple([Boats] * 3 + [Rows] * 5, StepRecord)
+RECORD_STEPS = types.void(FLEET, types.float64, RECORD)  # `record_steps` of a program
+HISTORY = types.NamedUniTuple(Rows, 4, History)
+PERIODS = types.NamedUniTuple(types.int64, 2, Periods)
 
 
 @unlocked
@@ -105,8 +115,8 @@ def add_sensor_errors_to_boats(
 
 
 @merged
-def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int, dt: float) -> None:
-    """Add the commands in force over some steps to their time integrals, and count saturated steps.
+def count_saturated_steps(boats: Any, commands: Array, orders: Orders, steps: int) -> None:
+    """Count the saturated steps of each command over some steps.
 
     A step is saturated if the controller ordered more than the range of the channel allows.
     """
@@ -114,7 +124,6 @@ def accumulate_commands(boats: Any, commands: Array, orders: Orders, steps: int,
     for b in boats:
         for j in range(len(orders.places)):
             c = orders.places[j]
-            orders.total[b, c] += commands[b, c] * (steps * dt)
             if abs(orders.values[b, j] - commands[b, c]) > SLACK * (high[c] - low[c]):
                 orders.saturated[b, c] += steps
 
@@ -124,8 +133,7 @@ def run_periods(
 ) -> None:
     """Simulate vessels with their controllers over control periods, in place.
 
-    In each period the sensors are read, the control law computes commands, and the physics is
-    integrated.
+    Each period begins with the sensors and the control law; then the physics is integrated.
 
     Args:
         law: Law of the controllers.
@@ -137,12 +145,8 @@ def run_periods(
         loop: Records and arrays of the controllers.
     """
     control, sensing, goals, orders = loop
-    steps, dt = periods.steps, periods.dt
     places, low, high = orders.places, orders.low, orders.high
     for i in range(periods.number):
-        if not periods.law_first:
-            accumulate_commands(boats, commands, orders, steps, dt)
-            advance.function(*advance.given)
         feel.function(*feel.given)
         add_sensor_errors_to_boats(boats, sensing.felt, sensing.sensors, sensing.noise, i)
         for b in boats:
@@ -153,9 +157,58 @@ def run_periods(
             for j in range(len(places)):
                 order = orders.values[b, j]
                 commands[b, places[j]] = min(max(order, low[places[j]]), high[places[j]])
-        if periods.law_first:
-            accumulate_commands(boats, commands, orders, steps, dt)
-            advance.function(*advance.given)
+        count_saturated_steps(boats, commands, orders, periods.steps)
+        advance.function(*advance.given)
+
+
+@merged
+def copy_row(source: Array, target: Array, i: int) -> None:
+    """Copy the first row of an array to row i of another one."""
+    for j in range(target.shape[1]):
+        target[i, j] = source[0, j]
+
+
+def run_recorded_periods(
+    law: Any,
+    feel: Call,
+    advance: Call,
+    boats: Any,
+    commands: Array,
+    loop: Loop,
+    memory: Array,
+    history: History,
+) -> None:
+    """Simulate one vessel with its controller over control periods, in place, and record it.
+
+    The physics is integrated over each period; at its end the sensors are read and the control law
+    computes commands.
+
+    Args:
+        law: Law of the controller.
+        feel: Reads the instruments of the vessel.
+        advance: Integrates the physics over the next period and records each step.
+        boats: Row of the vessel, 0.
+        commands: Commands (1, inputs) in force.
+        loop: Records and arrays of the controller.
+        memory: Numbers (1, M) of the controller's memory.
+        history: Receives what is recorded of each period; its length is the number of periods.
+    """
+    control, sensing, goals, orders = loop
+    places, low, high = orders.places, orders.low, orders.high
+    for i in range(len(history.felt)):
+        advance.function(*advance.given)
+        feel.function(*feel.given)
+        add_sensor_errors(sensing.felt[0], sensing.sensors, sensing.noise[0, i])
+        for j in range(goals.values.shape[1]):
+            goals.wanted[0, j] = goals.values[i, j]
+        law(boats, control.settings, control.memory, control.sense, control.goal, control.sent)
+        for j in range(len(places)):
+            order = orders.values[0, j]
+            commands[0, places[j]] = min(max(order, low[places[j]]), high[places[j]])
+            history.orders[i, j] = order
+        copy_row(sensing.felt, history.felt, i)
+        copy_row(commands, history.commands, i)
+        copy_row(memory, history.memory, i)
 
 
 class ProgramFunction:
@@ -218,3 +271,31 @@ def compile_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
     own.compile((*kinds, Boats, PERIODS, Rows, loop))
     own.disable_compile()
     return own
+
+
+def recorded_loop(law: Any, feel: Call, advance: Call, loop: Loop) -> tuple[Any, Any]:
+    """Return a control law as an argument of `run_recorded_periods`, and this function, compiled.
+
+    Each combination of types of arguments is compiled once.
+
+    Args:
+        law: Law of the controller.
+        feel: Reads the instruments of the vessel.
+        advance: Integrates the physics and records each step.
+        loop: Records and arrays of the controller.
+    """
+    # the types of records are slow to find out
+    key = (law, tuple(records.dtype for records in loop.control), type(feel.function))
+    if key not in _RECORDED_LOOPS:
+        pointer = law_pointer(law, tuple(map(numba.typeof, loop.control)))
+        own: Any = run_recorded_periods
+        if not DEBUG:
+            own = unlocked(run_recorded_periods)
+            kinds = pointer.kind, numba.typeof(feel), numba.typeof(advance)
+            own.compile((*kinds, Boats, Rows, numba.typeof(loop), Rows, HISTORY))
+            own.disable_compile()
+        _RECORDED_LOOPS[key] = pointer, own
+    return _RECORDED_LOOPS[key]
+
+
+_RECORDED_LOOPS: dict[Any, tuple[Any, Any]] = {}  # laws and loops that are compiled

@@ -2,7 +2,7 @@
 
 import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from inspect import getsourcefile
 from math import inf
@@ -11,15 +11,16 @@ import numpy as np
 
 from boatsim.control.base import Controller, Sense
 from boatsim.errors import BadInput, BoatsimError
+from boatsim.physics.signals import Array
+from boatsim.simulate.control_columns import ControlColumns
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.multi_period_step import MultiPeriodStep
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_end import TIME_TOLERANCE
 from boatsim.simulate.run_options import GoalSource
 from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import add_further_readings
 
 SHORTEST_PART = 1e-6  # [s] of a step that the controller cuts
-TIME_TOLERANCE = 1e-9  # [s] by which rounding may shift the time at which something is due
 
 
 class ControlLoop:
@@ -32,6 +33,9 @@ class ControlLoop:
         state: State of the vessel at the end of the last step.
         sense: The latest sample of the sensors.
         sent: Commands sent by the controller, before ranges limit them.
+        columns: Columns of the log with sensor readings and estimates.
+        due: Time at which the next control period begins [s].
+        imu: Random generator of the inertial unit.
         steps: Number of physics steps.
         saturated: Channel -> steps in which a command exceeded its range.
     """
@@ -59,7 +63,7 @@ class ControlLoop:
         self.scenario = scenario
         self.engine = engine
         self.goal_at = goal_at
-        self._imu, *others = generators
+        self.imu, *others = generators
         self._instruments = [
             sensor.start(rng)
             for sensor, rng in zip(scenario.additional_sensors, others, strict=True)
@@ -73,7 +77,7 @@ class ControlLoop:
         self._beyond: list[str] = []
         self.saturated: Counter[str] = Counter()
         self.steps = 0
-        self._due = 0.0  # [s] when the next control period begins
+        self.due = 0.0
         self._early = inf  # [s] when the controller acts within its period
         start = scenario.file.start
         self.state = State(**start.initial_state_values())
@@ -81,9 +85,9 @@ class ControlLoop:
             controller.reset()
             engine.reset(self.state, {**controller.initial_commands(), **start.commands})
             self._store_sent_commands()
-        self._many_periods = MultiPeriodStep.create_if_possible(scenario, engine, self._imu)
-        self._due += scenario.controller.period
-        self._sense_and_control()
+        self.control()
+        with self.name_controller_in_errors() as controller:
+            self.columns = ControlColumns(scenario, controller.estimates())
 
     @contextmanager
     def name_controller_in_errors(self) -> Iterator[Controller]:
@@ -133,32 +137,37 @@ class ControlLoop:
         Raises:
             BadInput: If the controller fails.
         """
-        if self.state.t >= self._due - TIME_TOLERANCE:
-            self._due += self.scenario.controller.period
-            self._sense_and_control()
+        if self.state.t >= self.due - TIME_TOLERANCE:
+            self.control()
 
-    def advance_periods(self, until: float) -> None:
-        """Advance the run over whole control periods in one compiled call, where that is possible.
-
-        Nothing happens unless scenario and engine allow it, a period has just begun and several
-        periods end at least a step before `until` [s].
+    def control(self) -> None:
+        """Read the sensors and run the controller for the period that begins now.
 
         Raises:
-            BadInput: If the controller or the physics fails.
+            BadInput: If the controller fails.
         """
-        many, t = self._many_periods, self.state.t
-        if many is None:
+        self.due += self.scenario.controller.period
+        self._sense_and_control()
+
+    def goal_spans(self, times: Array) -> Iterator[tuple[slice, Mapping[str, float]]]:
+        """Yield the goals over ascending times (N,) [s]: ranges of equal goals, and the goals."""
+        if self.goal_at == self.scenario.goal_at:
+            yield from self.scenario.goal_spans(times)
             return
-        periods = many.count_complete_periods(t, until)
-        if not periods or abs(self._due - t - many.period) > TIME_TOLERANCE:
-            return
-        with self.name_controller_in_errors():
-            done = many.advance(t, periods, self.goal_at)
-        self.steps += done.steps
-        self.saturated.update(done.saturated)
-        self._on_interval([done.mean[name] for name in self.channels], done.seconds)
-        self.state = self.engine.state
-        self._due += done.seconds
+        for number, t in enumerate(times.tolist()):
+            yield slice(number, number + 1), self.goal_at(t)
+
+    def follow_engine(self, state: State, sense: Sense, orders: Mapping[str, float]) -> None:
+        """Take over what compiled code has done: the state, and the controller's last step.
+
+        Args:
+            state: State of the vessel.
+            sense: What the controller received.
+            orders: What it sent, by channel.
+        """
+        self.state = state
+        self.sense: Sense = sense
+        self.engine.note_sent(orders)
         self._store_sent_commands()
 
     def commands_in_force(self) -> list[float]:
@@ -178,21 +187,29 @@ class ControlLoop:
             (state.x, state.y, state.psi),
             (state.u, state.v, state.r),
             self.engine.acceleration(),
-            self._imu,
+            self.imu,
             (state.phi, state.p),
         )
-        self.sense: Sense = add_further_readings(usual, self._instruments, self.engine)
+        self.sense = add_further_readings(usual, self._instruments, self.engine)
         goal = self.goal_at(state.t)
         with self.name_controller_in_errors() as controller:
             if goal.get(OFF):
                 controller.reset()
-                self._send_commands({})
+                self.send_commands({})
                 self._early = inf
                 return
-            self._send_commands(controller.step(self.sense, goal))
+            self.send_commands(controller.step(self.sense, goal))
             self._early = state.t + controller.time_to_extra_step(self.sense)
 
-    def _send_commands(self, commands: dict[str, float]) -> None:
+    def send_commands(self, commands: dict[str, float]) -> None:
+        """Send commands of the controller to the vessel, and note what was sent.
+
+        Args:
+            commands: Commands by channel; the others are neutral.
+
+        Raises:
+            BadInput: If a channel does not exist or a value is not finite.
+        """
         self.engine.command(commands)
         self._store_sent_commands()
 

@@ -6,6 +6,7 @@ converts states, and `add_force_and_inertia_to_mujoco` converts forces in the co
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from typing import TypedDict, Unpack
 
 import mujoco
@@ -13,8 +14,10 @@ import numpy as np
 
 from boatsim.errors import BadPhysics
 from boatsim.physics.compiled_program import CompiledProgram
-from boatsim.physics.debugging import DEBUG
+from boatsim.physics.debugging import DEBUG, python_function
 from boatsim.physics.kernel.equations import COORDINATES, SIGN
+from boatsim.physics.native.calls import partial_call
+from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import native_callback, world
@@ -69,7 +72,7 @@ class Engine(Stepper):
             BadInput: If the hull cannot be read.
             BadPhysics: If the model cannot be stepped.
         """
-        super().__init__(vessel, step)
+        super().__init__(Program(vessel), step)
         self.tank = tank or world.open_water(vessel)
         self._k = np.zeros(self.code.K)
         self.code.compute_mass_constants(self.program.body, self._values, self._on, self._k)
@@ -117,11 +120,56 @@ class Engine(Stepper):
             super().advance(steps, length)
         self.model.opt.timestep = self.step  # a step may have been cut
 
+    def _advance(self, length: float) -> None:
+        """One step of `length` s, cut where the signal of an actuator has a jump or a kink."""
+        left, least, before = length, self.code.SHORTEST, 0.0
+        self._mean[:] = 0.0
+        while left > 1e-9:
+            dt = left
+            if self.code.HAS_TIME_TO_DISCONTINUITY:
+                dt = self._substep_length(left, least)
+                least, before = self._minimum_substep(dt, before, least), dt
+            self._advance_actuators(dt)
+            if self.code.HAS_ADVANCE_MOTION_MEMORY:
+                self._state_of_force[:] = self._joint_state()
+                self._advance_memory_of_motion(self.t, dt)
+            self._step(dt)
+            self._mean += self._mean_actuators() * (dt / length)
+            left -= dt
+
     def _step(self, dt: float) -> None:
+        """Take one step of dt [s] with fixed actuators."""
         self.model.opt.timestep = dt
         self._held[:-2] = self._act
         self._held[-2:] = self.data.time, 1.0 / dt
         mujoco.mj_step(self.model, self.data)
+
+    @cached_property
+    def _substep_length(self) -> Callable[[float, float], float]:
+        """`substep_length` of this vessel, a function of the remainder and the lower limit."""
+        arrays = self._commands, self._memory
+        return partial_call(self.code, "substep_length", *arrays, ..., ..., self._values, self._on)
+
+    @cached_property
+    def _minimum_substep(self) -> Callable[..., float]:
+        """`minimum_substep`, which needs no compilation for single numbers."""
+        return python_function(self.code.minimum_substep)
+
+    @cached_property
+    def _advance_actuators(self) -> Callable[[float], None]:
+        """`advance_actuators` of this vessel, a function of the length of the step."""
+        arrays = self._commands, self._memory
+        return partial_call(
+            self.code, "advance_actuators", *arrays, ..., self._values, self._on, self._act
+        )
+
+    @cached_property
+    def _advance_memory_of_motion(self) -> Callable[[float, float], None]:
+        """`advance_memory_of_motion` in `_state_of_force`, a function of time and step."""
+        rest = self._memory, self._act, self._values, self._on
+        return partial_call(
+            self.code, "advance_memory_of_motion", ..., self._state_of_force, ..., *rest
+        )
 
     def advance_without_actuators(self, steps: int) -> None:
         """Take steps in MuJoCo's own loop with actuators held in place, for benchmarks."""

@@ -1,7 +1,7 @@
 """How the vessels of a fleet are controlled: goals passed on, compiled controllers, a function."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import groupby
 from typing import TypeAlias
 
@@ -37,7 +37,6 @@ class FleetControl:
         steps: Steps of a control period.
         saturated: Steps (n, inputs) in which a command exceeded its range.
         random: Random generators of the sensors of each vessel.
-        total: Time integral (n, inputs) of the commands of compiled controllers.
     """
 
     batch: Batch
@@ -45,10 +44,6 @@ class FleetControl:
     steps: int
     saturated: Array
     random: Sequence[np.random.Generator] = ()
-    total: Array = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.total = np.zeros_like(self.saturated)
 
     @property
     def limits(self) -> tuple[Array, Array]:
@@ -143,18 +138,12 @@ class CompiledControl:
     Each vessel's controller has its own settings and memory.
     """
 
-    def __init__(
-        self,
-        aboard: FleetControl,
-        controllers: Sequence[CompiledController],
-        memory: Records | None = None,
-    ) -> None:
+    def __init__(self, aboard: FleetControl, controllers: Sequence[CompiledController]) -> None:
         """Compile the loop of controller and vessels.
 
         Args:
             aboard: Vessels and sensors.
             controllers: Controllers, used in turn.
-            memory: Memory (n,) of the controllers; default: a new one.
 
         Raises:
             BadInput: If they are not of one kind.
@@ -168,7 +157,7 @@ class CompiledControl:
         n, boat = len(aboard.batch), aboard.batch.vessels[0]
         rows = np.concatenate([c.settings_array() for c in controllers])
         self._settings = rows[np.arange(n) % len(rows)]
-        self._memory = np.zeros(n, kind.memory_type) if memory is None else memory
+        self._memory = np.zeros(n, kind.memory_type)
         self._sense = np.zeros(n, SENSE)
         self._goal, self._sent = (np.zeros(n, t) for t in kind.record_types())
         self._felt, self._wanted, self.orders = (
@@ -182,19 +171,18 @@ class CompiledControl:
         """Clear the memory of the controllers of all vessels of a fleet."""
         self._memory[:] = np.zeros(1, self.kind.memory_type)
 
-    def advance(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
+    def advance(self, goals: Sequence[Mapping[str, float]]) -> None:
         """Advance the fleet by one control period per goal, under its compiled controllers.
 
         Args:
             goals: Goals of each period.
-            begins: Whether a period begins with the controller; otherwise it ends with it.
         """
         table = np.array([self.kind.goal_values(goal) for goal in goals], dtype=float)
-        self.aboard.batch.run_on_threads(lambda boats: self._advance(boats, table, begins))
+        self.aboard.batch.run_on_threads(lambda boats: self._advance(boats, table))
 
-    def _advance(self, boats: Boats, goals: Array, begins: bool) -> None:
+    def _advance(self, boats: Boats, goals: Array) -> None:
         aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
-        periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
+        periods = compiled_loop.Periods(count, aboard.steps)
         loop = self._make_loop(goals, aboard.next_sensor_noise(boats, count))
         feel = self._feel.bind_arguments(boats, batch.fleet, self._felt)
         advance = self._step.bind_arguments(boats, batch.fleet, batch.step, aboard.steps)
@@ -209,9 +197,7 @@ class CompiledControl:
             ),
             compiled_loop.Sensing(self._felt, aboard.sensors.error_parameters, noise),
             compiled_loop.Goals(self._wanted, goals),
-            compiled_loop.Orders(
-                self.orders, self.places, self._low, self._high, aboard.saturated, aboard.total
-            ),
+            compiled_loop.Orders(self.orders, self.places, self._low, self._high, aboard.saturated),
         )
 
     _run: Callable[..., None]

@@ -1,6 +1,6 @@
 """Tables that grow by rows, in memory or in a file, which keeps the memory of a long run small."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import TypeAlias
@@ -34,6 +34,18 @@ class GrowingTable:
             self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
         self._columns[:, self.count] = row
         self.count += 1
+
+    def append_rows(self, parts: Sequence[Array]) -> None:
+        """Append several rows to the table.
+
+        Args:
+            parts: Groups of columns (rows, columns), in the order of the table.
+        """
+        end = self.count + len(parts[0])
+        while end > self._columns.shape[1]:
+            self._columns = np.concatenate([self._columns, np.empty_like(self._columns)], axis=1)
+        _write_parts(self._columns[:, self.count : end], parts, 0)
+        self.count = end
 
     def replace_last_values(self, first: int, values: Array) -> None:
         """Replace the values of the table's last row from column number `first` on."""
@@ -86,6 +98,26 @@ class FileTable(GrowingTable):
         self._columns[:, at] = row
         self.count += 1
 
+    def append_rows(self, parts: Sequence[Array]) -> None:
+        """Append several rows to the table in the file.
+
+        Args:
+            parts: Groups of columns (rows, columns), in the order of the table.
+
+        Raises:
+            OSError: If the disk is full.
+        """
+        begin, end = 0, len(parts[0])
+        while begin < end:
+            at = self.count - self._written
+            if at == PIECE:
+                self._write_piece()
+                at = 0
+            rows = min(PIECE - at, end - begin)
+            _write_parts(self._columns[:, at : at + rows], parts, begin)
+            self.count += rows
+            begin += rows
+
     def replace_last_values(self, first: int, values: Array) -> None:
         """Replace values of the table's last row, which is always in memory, from `first` on."""
         self._columns[first:, self.count - self._written - 1] = values
@@ -105,6 +137,14 @@ class FileTable(GrowingTable):
     def _write_piece(self) -> None:
         self._pieces.append(np.ascontiguousarray(self._columns.T).tobytes())
         self._written += PIECE
+
+
+def _write_parts(target: Array, parts: Sequence[Array], begin: int) -> None:
+    """Write rows of groups of columns, from row `begin` on, to a table (columns, rows)."""
+    column, rows = 0, target.shape[1]
+    for part in parts:
+        target[column : column + part.shape[1]] = part[begin : begin + rows].T
+        column += part.shape[1]
 
 
 # creates a table from the names of its columns and the expected number of rows

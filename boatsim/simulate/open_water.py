@@ -11,6 +11,7 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
 from boatsim.simulate.batch import Batch
+from boatsim.simulate.step_record import make_step_record
 from boatsim.simulate.stepper import Stepper
 from boatsim.simulate.tank import Tank
 from boatsim.simulate.world import Model
@@ -32,12 +33,13 @@ class OpenWater(Stepper):
             vessel: The vessel.
             step: Integration step [s].
         """
-        super().__init__(vessel, step)
         self.batch = Batch(vessel, 1, step, threads=1)
+        super().__init__(self.batch.program, step)
         fleet = self.batch.fleet
         self._commands, self._memory, self._act = fleet.commands[0], fleet.memory[0], fleet.act[0]
-        self._y, self._k = fleet.y[0], fleet.k[0]
-        self._extra = fleet.force
+        self._y = fleet.y[0]
+        self._record = make_step_record(self.program, 1, 1)
+        self._record.ends[0] = 1
         self._sensed = np.zeros((1, len(SENSE_FIELDS)))
         self.reset()
 
@@ -64,10 +66,9 @@ class OpenWater(Stepper):
         return np.asarray(self._y)
 
     @cached_property
-    def _step_in_place(self) -> Callable[[float, float], None]:
-        """`step_in_place` of this vessel, a function of time and length of the step."""
-        rest = self._act, self._values, self._on, self._k, self._extra
-        return partial_call(self.code, "step_in_place", ..., self._y, ..., *rest)
+    def _record_step(self) -> Callable[[float], None]:
+        """`record_steps` of this vessel for one step, a function of its length."""
+        return partial_call(self.code, "record_steps", self.batch.fleet, ..., self._record)
 
     @cached_property
     def _read_instruments(self) -> Callable[[], None]:
@@ -75,9 +76,18 @@ class OpenWater(Stepper):
         given = ONE, self.batch.fleet, self._sensed
         return partial_call(self.code, "read_instruments_of_boats", *given)
 
-    def _step(self, dt: float) -> None:
-        self._step_in_place(self.t, dt)
-        self.batch.t[0] += dt
+    def _advance(self, length: float) -> None:
+        self._record.done[:] = 0
+        self._record_step(length)
+        self._mean[:] = self._record.mean[0]
+
+    def true_readings(self) -> Array:
+        """Return the readings (11,) of error-free instruments, in the order of `SENSE_FIELDS`.
+
+        The array is overwritten by the next call.
+        """
+        self._read_instruments()
+        return np.asarray(self._sensed[0])
 
     def acceleration(self) -> tuple[float, float]:
         """Return the acceleration over ground of the vessel's origin along body x, y [m/s^2]."""

@@ -2,19 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import monotonic
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name_message
+from boatsim.physics.signals import Array
 from boatsim.recordings.table import Notes, Recording, SignalMissing
-from boatsim.simulate.camera import Frame
+from boatsim.simulate.block_stepper import BlockStepper
 from boatsim.simulate.camera_log import CameraLog
-from boatsim.simulate.control_loop import TIME_TOLERANCE, ControlLoop
+from boatsim.simulate.control_loop import ControlLoop
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.growing_table import FileTable, GrowingTable
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_end import RunEnd
 from boatsim.simulate.run_log import RunLog
 from boatsim.simulate.run_options import RunOptions
 from boatsim.simulate.scenario import Scenario
@@ -86,8 +89,9 @@ class Simulation:
         )
         self._log = RunLog(self._loop, self._make_table)
         state = self._loop.state
-        self._frames: list[Frame] = []  # since the last row of the log
-        self._frames += self._camera.take_frames(state, state, self._loop.commands_in_force())
+        self._end = RunEnd(scenario.file)
+        # since the last row of the log
+        self._frames = self._camera.take_frames(state, state, self._loop.commands_in_force())
         self._delivered = 0  # rows of the log that the listener has
         self._frames_delivered = 0
         self._last_delivery = monotonic()
@@ -117,12 +121,10 @@ class Simulation:
                 if options.pace:
                     # before the step, so that sensors and goals at its end are those of that time
                     options.pace.wait_until(self.time + self.engine.step, options.stop)
+                if self._blocks is None:
+                    self._advance()
                 else:
-                    end = self._scenario.file.duration
-                    self._loop.advance_periods(
-                        min(self._log.due, self._camera.next_frame_time, end)
-                    )
-                self._advance()
+                    self._advance_block(self._blocks)
                 if options.progress and self._loop.steps >= reported + PROGRESS:
                     options.progress(self.time)
                     reported = self._loop.steps
@@ -157,9 +159,8 @@ class Simulation:
         """One step of physics, then control at its end, and a row if one is due."""
         before = self._loop.state
         self._loop.advance(self._write_row)
-        self._frames += self._camera.take_frames(
-            before, self._loop.state, self._loop.commands_in_force()
-        )
+        commands = self._loop.commands_in_force()
+        self._add_frames(self._camera.take_frames(before, self._loop.state, commands))
         held = self._loop.sent
         self._loop.control_if_due()
         changed = self._options.log_changes and self._loop.sent != held
@@ -167,10 +168,42 @@ class Simulation:
             self._write_row()
         self._deliver_rows()
 
+    @cached_property
+    def _blocks(self) -> BlockStepper | None:
+        """Advances the run by blocks of steps, if nothing has to be done after each of them."""
+        options = self._options
+        if options.pace is not None or options.finish is not bool or options.log_changes:
+            return None
+        return BlockStepper.create_if_possible(self._loop)
+
+    def _advance_block(self, blocks: BlockStepper) -> None:
+        """Advance by a block of steps, with their camera frames and rows."""
+        before = self._loop.state
+        block = blocks.advance(self._end, self._log.rows_due)
+        if block.count:
+            frames, steps = self._camera.take_frames_of_block(before, block)
+            waiting = np.full(len(self._frames), -1)
+            self._log.add_rows(
+                block, np.concatenate([self._frames, frames]), np.concatenate([waiting, steps])
+            )
+            last = np.flatnonzero(block.logged)[-1:]
+            if len(last):
+                self._frames = frames[steps > last[0]]
+            else:
+                self._add_frames(frames)
+        if block.error is not None:
+            raise block.error
+        self._deliver_rows()
+
+    def _add_frames(self, frames: Array) -> None:
+        """Keep the frames since the last row of the log, which shows the last of them."""
+        if len(frames):
+            self._frames = frames[-1:]
+
     def _write_row(self) -> None:
-        frames = self._frames
-        self._frames = []
-        self._log.add_row(frames)
+        frame = self._frames[-1] if len(self._frames) else None
+        self._frames = self._frames[:0]
+        self._log.add_row(frame)
 
     def _deliver_rows(self, over: bool = False) -> None:
         """Hand new rows to the listeners, if there are enough of them or enough time has passed."""
@@ -193,19 +226,9 @@ class Simulation:
         self._delivered, self._frames_delivered = rows, frames
 
     def _is_finished(self) -> bool:
-        file, state = self._scenario.file, self._loop.state
-        if state.t >= file.duration - TIME_TOLERANCE:
-            return True
         if self._scenario.controller.done or self._options.finish():
             return True
-        until = file.until
-        if until.turned is not None and abs(state.psi - file.start.psi) >= until.turned:
-            return True
-        if until.starboard is None:
-            return False
-        north, east = state.x - file.start.x, state.y - file.start.y
-        c, s = np.cos(file.start.psi), np.sin(file.start.psi)
-        return bool(c * east - s * north >= until.starboard)
+        return self._end.is_reached(self._loop.state)
 
     def _check_signals(self) -> None:
         """Check before the run that the log has every signal that will be evaluated.

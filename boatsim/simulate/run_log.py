@@ -1,26 +1,27 @@
 """The log of a run: its columns, and a row for every time at which one is due."""
 
-from collections.abc import Sequence
 from math import nan
 from operator import attrgetter
 
-from boatsim.physics.base import Force, WaterFlow, make_motion
-from boatsim.physics.debugging import python_function
-from boatsim.physics.signals import AXES, COMPONENTS, motion_signals
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.physics.base import Force, WaterFlow
+from boatsim.physics.signals import AXES, COMPONENTS, Array, motion_signals
 from boatsim.physics.vessel.wave_field import wave_field
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.camera import CAMERA_POSE, Frame
+from boatsim.simulate.camera import CAMERA_POSE
 from boatsim.simulate.camera_log import mark_columns
-from boatsim.simulate.control_loop import TIME_TOLERANCE, ControlLoop
-from boatsim.simulate.engine import State
+from boatsim.simulate.control_loop import ControlLoop
 from boatsim.simulate.growing_table import GrowingTable, MakeTable
+from boatsim.simulate.run_end import TIME_TOLERANCE
+from boatsim.simulate.step_block import StepBlock
+from boatsim.simulate.stepper import State
 from boatsim.simulate.tracking_errors import GOAL
 
-SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
-SENSE_VALUES = attrgetter("psi", "r", "ax", "ay", "u", "x", "y")  # of a Sense, in the same order
 WAVE_ELEVATION = "wave_elevation_m"
 WATER_VELOCITY = ("water_north_mps", "water_east_mps")
-REFERENCE = "reference_"  # prefix of estimates that are reference signals of a controller
+PLACE = (State._fields.index("x"), State._fields.index("y"))
 
 
 class RunLog:
@@ -46,25 +47,15 @@ class RunLog:
         Args:
             loop: The control loop.
             make_table: Creates a table from names of columns and the expected number of rows.
-
-        Raises:
-            BadInput: If the controller fails to give its estimates.
         """
         self._loop = loop
         self.scenario = loop.scenario
         vessel = loop.engine.vessel
-        with loop.name_controller_in_errors() as controller:
-            estimates = list(controller.estimates())
-        self._references = [name for name in estimates if name.startswith(REFERENCE)]
-        self._estimates = [name for name in estimates if not name.startswith(REFERENCE)]
         self._signals_text = motion_signals(vessel.dof)
         self._motion_of = attrgetter(*(signal.symbol for signal in self._signals_text))
+        self._motion_places = [State._fields.index(s.symbol) for s in self._signals_text]
         self._axes = [i for i, axis in enumerate(AXES) if axis in vessel.dof]
-        self._readings: dict[str, str] = {}  # reading of a further sensor -> its column
-        for sensor in self.scenario.additional_sensors:
-            for reading, column in type(sensor).columns.items():
-                if column not in SENSED:  # logged already
-                    self._readings[reading] = column
+        self._camera_columns = 2 * len(self.scenario.camera.marks) + len(CAMERA_POSE)
         self._measured = {name: channel.neutral for name, channel in vessel.measured.items()}
         # goals that are commands are already in the columns `sent_`
         self._goals = [key for key in self.scenario.goal_keys if key not in vessel.commands]
@@ -82,7 +73,7 @@ class RunLog:
         columns += self._measured
         columns += map("sent_{}".format, self._loop.channels)
         columns += map("actual_{}".format, self._loop.engine.vessel.actuators)
-        columns += map("sensed_{}".format, (*SENSED, *self._readings.values()))
+        columns += self._loop.columns.sensed
         columns += mark_columns(self.scenario.camera)
         columns += map("camera_{}".format, CAMERA_POSE)
         columns += map("force_{}".format, components)
@@ -93,9 +84,7 @@ class RunLog:
         if self._water_moves:
             columns += WATER_VELOCITY
         columns.append("contacts")
-        for name in self._estimates:
-            columns += [f"estimate_{name}", f"estimate_{name}_low", f"estimate_{name}_high"]
-        columns += self._references
+        columns += self._loop.columns.estimated
         columns += [f"{GOAL}{name}" for name in self._goals]
         return columns
 
@@ -103,18 +92,34 @@ class RunLog:
         """Return whether the log shall get a row at the present simulated time."""
         return self._loop.state.t >= self.due - TIME_TOLERANCE
 
-    def add_row(self, frames: Sequence[Frame]) -> None:
+    def rows_due(self, times: Array) -> NDArray[np.bool_]:
+        """Return at which of several consecutive times [s] the log shall get a row.
+
+        The rows count as written.
+        """
+        interval = self.scenario.file.log
+        if interval == 0.0:
+            return np.ones(len(times), dtype=bool)
+        found: list[bool] = []
+        for t in times.tolist():
+            found.append(t >= self.due - TIME_TOLERANCE)
+            if found[-1]:
+                self.due += interval
+        return np.array(found)
+
+    def add_row(self, frame: Array | None) -> None:
         """Append a row with the present state of the closed loop to the log.
 
         Args:
-            frames: Camera frames since the last row; the row holds the last of them.
+            frame: The last camera frame since the last row, a row of `Camera.take_frames`; None if
+                there was none.
 
         Raises:
             BadInput: If the controller fails to give its estimates.
             OSError: If the disk is full.
         """
-        loop = self._loop
-        state, engine, sense = loop.state, loop.engine, loop.sense
+        loop, columns = self._loop, self._loop.columns
+        state, engine = loop.state, loop.engine
         if self.is_due():
             self.due += self.scenario.file.log
         with loop.name_controller_in_errors() as controller:
@@ -128,40 +133,75 @@ class RunLog:
         ]
         row += map(loop.sent.__getitem__, loop.channels)
         row += engine.actuators.values()
-        row += SENSE_VALUES(sense)
-        row += map(sense.more.__getitem__, self._readings)
-        if frames:
-            row += [*frames[-1].marks, *frames[-1][1:4]]
+        row += columns.sensed_values(loop.sense)
+        if frame is None:
+            row += [nan] * self._camera_columns
         else:
-            row += [nan] * (2 * len(self.scenario.camera.marks) + len(CAMERA_POSE))
-        wrench = engine.wrench()
-        row += map(wrench.__getitem__, self._axes)
+            row += [*frame[4:].tolist(), *frame[1:4].tolist()]
+        row += engine.body_force()
         if self._winds:
-            row += map(self._wind_wrench(state).__getitem__, self._axes)
+            row += engine.air_force()
         if len(self._waves):
             row.append(float(self._waves.elevation(state.x, state.y, state.t)))
         if self._water_moves:
             row += engine.water_velocity()
         row.append(engine.contacts)
-        for name in self._estimates:
-            row += estimates[name]
-        row += [estimates[name].value for name in self._references]
+        row += columns.estimated_values(estimates)
         row += [goal.get(name, nan) for name in self._goals]
         self.table.append_row(row)
 
-    def _wind_wrench(self, state: State) -> list[float]:
-        """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
-        total = [0.0] * len(AXES)
-        for effect in self._winds:
-            # interpreted: a single call is not worth compiling
-            law = python_function(type(effect).law)
-            values: dict[str, float] = {}
-            for role, channel in self.scenario.vessel.specified_inputs(effect).items():
-                values[role] = self._measured[channel] if isinstance(channel, str) else channel
-            signals = (type(effect).signals(**values),) if type(effect).roles else ()
-            wrench = law(make_motion(**state._asdict()), effect.values(), *signals)
-            total = [a + b for a, b in zip(total, wrench, strict=True)]
-        return total
+    def add_rows(self, block: StepBlock, frames: Array, steps: NDArray[np.int64]) -> None:
+        """Append the rows of many steps to the log.
+
+        Args:
+            block: The steps.
+            frames: Camera frames (k, 4 + 2 M) since the last row, rows of `Camera.take_frames`.
+            steps: Number (k,) of the step into which each falls; -1 before the first.
+
+        Raises:
+            OSError: If the disk is full.
+        """
+        record, control = block.record, block.control
+        at = np.flatnonzero(block.logged)
+        if not len(at):
+            return
+        rows: slice | NDArray[np.int64] = at
+        if len(at) == block.count:
+            rows = slice(block.count)  # a view costs nothing
+        states, after = block.states[rows], block.control_after[rows]
+        t, x, y = states[:, 0], states[:, PLACE[0]], states[:, PLACE[1]]
+        camera = np.full((len(at), self._camera_columns), nan)
+        first = np.searchsorted(at, steps)  # the first row from each frame on
+        shown = first < len(at)
+        camera[first[shown]] = np.roll(frames[shown, 1:], -len(CAMERA_POSE), axis=1)
+        parts = [
+            states[:, :1],
+            states[:, self._motion_places],
+            control.commands[after],
+            np.tile(np.array(list(self._measured.values())), (len(at), 1)),
+            control.sent[after],
+            record.mean[rows],
+            control.sensed[after],
+            camera,
+            record.force[rows],
+        ]
+        if self._winds:
+            parts.append(record.air[rows])
+        if len(self._waves):
+            parts.append(np.asarray(self._waves.elevation(x, y, t))[:, None])
+        if self._water_moves:
+            parts.append(record.water[rows])
+        parts += [np.zeros((len(at), 1)), control.estimated[after], self._goals_at(t)]
+        self.table.append_rows(parts)
+
+    def _goals_at(self, times: Array) -> Array:
+        """Goals (N, G) at several times [s]."""
+        rows = np.full((len(times), len(self._goals)), nan)
+        for span, goal in self._loop.goal_spans(times):
+            for column, name in enumerate(self._goals):
+                if name in goal:
+                    rows[span, column] = goal[name]
+        return rows
 
     def recording(self, notes: Notes, start: int = 0) -> Recording:
         """Return the log from row `start` on as a recording.

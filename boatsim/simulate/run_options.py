@@ -31,8 +31,9 @@ class RunOptions:
         log_changes: Whether the log also gets a row at each change of the commands.
         goal_source: Goals by time [s] in place of the scenario's.
         finish: Called after every step; True ends the run as complete.
-        stop: Called before every step; True interrupts the run, which then is incomplete.
-        progress: Receives the simulated time [s] every 100 steps.
+        stop: True interrupts the run, which then is incomplete. Called before every step, or
+            before each block of steps in open water.
+        progress: Receives the simulated time [s] every 100 steps, or after each block.
     """
 
     seed: int | None = None

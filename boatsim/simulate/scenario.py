@@ -1,14 +1,15 @@
 """Scenarios: vessel, water, start, controller, goals, duration and evaluation of a run."""
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
 
+import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from boatsim.arguments import check_instance, checked_name
@@ -18,7 +19,7 @@ from boatsim.files import Table, validate_table
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
 from boatsim.physics.particulars import GRAVITY
-from boatsim.physics.signals import STATE
+from boatsim.physics.signals import STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import tracking_errors
 from boatsim.simulate.camera import Camera, make_camera
@@ -35,6 +36,7 @@ OFF = "off"
 RESERVED = ("from", OFF)  # keys of a [[goal]] that are not goals
 # limit of a band, which may be infinite
 End = Annotated[float, Field(allow_inf_nan=True)]
+GOAL_TOLERANCE = 1e-9  # [s] by which rounding may shift the begin of a goal
 FASTEST_FROUDE = 10.0  # of a goal: no boat reaches it, so that its unit is another one
 
 
@@ -260,7 +262,7 @@ class Scenario:
         Returns:
             Value of each goal by its name; empty before the first [[goal]].
         """
-        at = bisect_right(self._goal_begin_times, t + 1e-9) - 1
+        at = bisect_right(self._goal_begin_times, t + GOAL_TOLERANCE) - 1
         if at < 0:
             return {}
         constant, courses = self._split_goals[at]
@@ -268,6 +270,22 @@ class Scenario:
             return constant
         tau = t - self._goal_begin_times[at]
         return {**constant, **{key: course.goal_value(tau) for key, course in courses.items()}}
+
+    def goal_spans(self, times: Array) -> Iterator[tuple[slice, Mapping[str, float]]]:
+        """Yield the goals over ascending times: ranges of equal goals, and the goals.
+
+        Args:
+            times: Times (N,) [s].
+        """
+        changes = np.searchsorted(times + GOAL_TOLERANCE, self._goal_begin_times)
+        bounds = sorted({0, *changes.tolist(), len(times)})
+        for begin, end in pairwise(bounds):
+            at = bisect_right(self._goal_begin_times, times[begin] + GOAL_TOLERANCE) - 1
+            if at >= 0 and self._split_goals[at][1]:
+                for row in range(begin, end):
+                    yield slice(row, row + 1), self.goal_at(float(times[row]))
+            else:
+                yield slice(begin, end), self.goal_at(float(times[begin]))
 
 
 def load(

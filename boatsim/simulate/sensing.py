@@ -122,6 +122,17 @@ class Sensors(CheckedParameters):
         _add_sensor_errors_in_python(row, self._error_list, noise)
         return Sense(*row)
 
+    def add_errors(self, felt: Array, rng: np.random.Generator) -> None:
+        """Turn true readings into measurements in place, with the numbers of `sample`.
+
+        Args:
+            felt: True readings (N, 11) at several times, in the order of `SENSE_FIELDS`.
+            rng: Random generator of the noise.
+        """
+        if not self.ideal:
+            noise = rng.standard_normal((len(felt), NOISES))
+            _add_sensor_errors_in_python(felt.T, self._error_list, noise.T)
+
     @cached_property
     def error_parameters(self) -> Array:
         """Array with the parameters of the sensor errors, as `add_sensor_errors` takes it.

@@ -13,11 +13,9 @@ import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.commands import clip_to_channel_ranges, input_vector, saturated_channels
-from boatsim.physics.debugging import python_function
 from boatsim.physics.native.calls import partial_call
 from boatsim.physics.program import Program
 from boatsim.physics.signals import AXES, Array, Wrench
-from boatsim.physics.vessel import Vessel
 
 
 class State(NamedTuple):
@@ -52,28 +50,28 @@ class Stepper(ABC):
             in force.
     """
 
-    def __init__(self, vessel: Vessel, step: float) -> None:
-        """Compile the vessel's program.
+    def __init__(self, program: Program, step: float) -> None:
+        """Prepare the state of a vessel.
 
         Args:
-            vessel: The vessel.
+            program: The vessel's program.
             step: Integration step [s].
         """
-        self.vessel, self.step = vessel, step
-        self.program = Program(vessel)
+        self.vessel, self.step = program.vessel, step
+        self.program = program
         self.code = self.program.simulation_functions
         self._values = self.program.values()
         self._on = self.program.effect_switches()
-        self._commands = np.zeros(len(vessel.inputs))
+        self._commands = np.zeros(len(self.vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.actuator_signal_size)
         self._state_of_force = np.zeros(2 * self.code.NQ)
-        self._actuators = vessel.actuators
+        self._actuators = self.vessel.actuators
         # mean of each actuator over the last step
         self._mean = np.zeros(len(self._actuators))
-        self._places = {name: i for i, name in enumerate(vessel.commands)}
-        self._neutral = input_vector(vessel, {}).tolist()
-        self._limits = list(vessel.limits().values())
+        self._places = {name: i for i, name in enumerate(self.vessel.commands)}
+        self._neutral = input_vector(self.vessel, {}).tolist()
+        self._limits = list(self.vessel.limits().values())
         self.sent = list(self._neutral)
 
     @property
@@ -90,8 +88,8 @@ class Stepper(ABC):
         """Return joint coordinates and rates (2 NQ,), SNAME."""
 
     @abstractmethod
-    def _step(self, dt: float) -> None:
-        """Take one step of dt [s] with fixed actuators."""
+    def _advance(self, length: float) -> None:
+        """Take one step of `length` [s] with constant commands; store the mean of the actuators."""
 
     @abstractmethod
     def acceleration(self) -> tuple[float, float]:
@@ -152,6 +150,15 @@ class Stepper(ABC):
             min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)
         ]
 
+    def note_sent(self, orders: Mapping[str, float]) -> None:
+        """Note commands that compiled code has sent to the vessel and limited to their ranges.
+
+        Args:
+            orders: Commands as they were sent, by channel; the others did not change.
+        """
+        for name, value in orders.items():
+            self.sent[self._places[name]] = value
+
     @property
     def channels_beyond_range(self) -> list[str]:
         """Names of the command channels whose last command exceeded its range."""
@@ -182,53 +189,15 @@ class Stepper(ABC):
         for _ in range(steps):
             self._advance(self.step if length is None else length)
         if not isfinite(sum(self._joint_state().tolist())):
-            raise BadPhysics(
-                f"{self.vessel.name}: the motion is no longer finite at t = {self.t:g} s"
-            )
+            raise self.diverged(self.t)
 
-    @cached_property
-    def _substep_length(self) -> Callable[[float, float], float]:
-        """`substep_length` of this vessel, a function of the remainder and the lower limit."""
-        arrays = self._commands, self._memory
-        return partial_call(self.code, "substep_length", *arrays, ..., ..., self._values, self._on)
+    def diverged(self, t: float) -> BadPhysics:
+        """Return the error of a motion that diverges.
 
-    @cached_property
-    def _minimum_substep(self) -> Callable[..., float]:
-        """`minimum_substep`, which needs no compilation for single numbers."""
-        return python_function(self.code.minimum_substep)
-
-    @cached_property
-    def _advance_actuators(self) -> Callable[[float], None]:
-        """`advance_actuators` of this vessel, a function of the length of the step."""
-        arrays = self._commands, self._memory
-        return partial_call(
-            self.code, "advance_actuators", *arrays, ..., self._values, self._on, self._act
-        )
-
-    @cached_property
-    def _advance_memory_of_motion(self) -> Callable[[float, float], None]:
-        """`advance_memory_of_motion` in `_state_of_force`, a function of time and step."""
-        rest = self._memory, self._act, self._values, self._on
-        return partial_call(
-            self.code, "advance_memory_of_motion", ..., self._state_of_force, ..., *rest
-        )
-
-    def _advance(self, left: float) -> None:
-        """One step of `left` s, cut where the signal of an actuator has a jump or a kink."""
-        least, before, whole = self.code.SHORTEST, 0.0, left
-        self._mean[:] = 0.0
-        while left > 1e-9:
-            dt = left
-            if self.code.HAS_TIME_TO_DISCONTINUITY:
-                dt = self._substep_length(left, least)
-                least, before = self._minimum_substep(dt, before, least), dt
-            self._advance_actuators(dt)
-            if self.code.HAS_ADVANCE_MOTION_MEMORY:
-                self._state_of_force[:] = self._joint_state()
-                self._advance_memory_of_motion(self.t, dt)
-            self._step(dt)
-            self._mean += self._mean_actuators() * (dt / whole)
-            left -= dt
+        Args:
+            t: Time at which it is no longer finite [s].
+        """
+        return BadPhysics(f"{self.vessel.name}: the motion is no longer finite at t = {t:g} s")
 
     def _mean_actuators(self) -> Array:
         """Mean (A,) of each actuator over the last part of a step."""
@@ -260,8 +229,17 @@ class Stepper(ABC):
 
         Degrees of freedom that the vessel lacks have 0.
         """
+        return Wrench(**dict(zip(self._axes_of_force, self.body_force(), strict=True)))
+
+    def body_force(self) -> tuple[float, ...]:
+        """Return the components of `wrench` along the vessel's degrees of freedom [N, N m]."""
         self._state_of_force[:] = self._joint_state()
-        return Wrench(**dict(zip(self._axes_of_force, self._body_force(self.t), strict=True)))
+        return self._total_body_force(self.t)
+
+    def air_force(self) -> tuple[float, ...]:
+        """Return the force of the air along the vessel's degrees of freedom [N, N m]."""
+        self._state_of_force[:] = self._joint_state()
+        return self._air_body_force(self.t)
 
     def water_velocity(self) -> tuple[float, float]:
         """Return the velocity of the water over the ground at the vessel's origin [m/s].
@@ -283,8 +261,17 @@ class Stepper(ABC):
         return [Wrench._fields[i] for i in self.code.FREE]
 
     @cached_property
-    def _body_force(self) -> Callable[[float], tuple[float, ...]]:
+    def _total_body_force(self) -> Callable[[float], tuple[float, ...]]:
         """`total_body_force` of this vessel in the state `_state_of_force`, a function of time."""
+        return self._function_of_time("total_body_force")
+
+    @cached_property
+    def _air_body_force(self) -> Callable[[float], tuple[float, ...]]:
+        """`air_body_force` of this vessel in the state `_state_of_force`, a function of time."""
+        return self._function_of_time("air_body_force")
+
+    def _function_of_time(self, name: str) -> Callable[[float], tuple[float, ...]]:
+        """Function of a force in the state `_state_of_force` after the last step."""
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
         given = self._state_of_force, self._act, last, self._values, self._on
-        return partial_call(self.code, "total_body_force", ..., *given)
+        return partial_call(self.code, name, ..., *given)

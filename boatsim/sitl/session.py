@@ -8,9 +8,9 @@ from typing import ClassVar
 
 from boatsim.control.base import Controller, Sense
 from boatsim.physics.base import param
-from boatsim.simulate.control_loop import TIME_TOLERANCE
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.run_end import TIME_TOLERANCE
 from boatsim.simulate.run_options import REFRESH, Listener
 from boatsim.simulate.vessel_scenario import REPEATED
 from boatsim.sitl.link import AutopilotLink, ReceivedFrame

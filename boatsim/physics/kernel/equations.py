@@ -338,10 +338,18 @@ class EquationWriter:
             )
         return found
 
-    def generate_wrench(self, lines: CodeLines, frame: Kinematics) -> None:
-        """Generate the line that evaluates the force laws of all effects."""
+    def generate_wrench(
+        self, lines: CodeLines, frame: Kinematics, function: str = "wrench"
+    ) -> None:
+        """Generate the line that evaluates the force laws of all effects, or of those of the air.
+
+        Args:
+            lines: Lines of the function.
+            frame: Kinematics of the vessel.
+            function: Function of `laws.py` that is called.
+        """
         self.generate_carried_water(lines)
-        lines.append_line(f"f = wrench({self.motion_constructor_text(frame)}, p, on, act, at)")
+        lines.append_line(f"f = {function}({self.motion_constructor_text(frame)}, p, on, act, at)")
 
     def generate_carried_water(self, lines: CodeLines) -> None:
         """Generate the displacement of the water on which waves travel, where it is no product."""
@@ -483,15 +491,16 @@ class EquationWriter:
     # Further functions
     # ------------------------------------------------------------------------------------------
 
-    def total_body_force_code(self) -> list[str]:
-        """Return the source lines of the generated function `total_body_force`.
+    def body_force_code(self, function: str) -> list[str]:
+        """Return the source lines of `total_body_force` or `air_body_force`.
 
-        It computes the sum of the forces of all effects.
+        Args:
+            function: Function of `laws.py` that sums the forces: `wrench` or `air_wrench`.
         """
         lines = CodeLines()
         self.generate_state_unpacking(lines)
         frame = self.generate_kinematics(lines)
-        self.generate_wrench(lines, frame)
+        self.generate_wrench(lines, frame, function)
         lines.append_line(
             f"return {self.tuple_text([f'f.{Wrench._fields[i]}' for i in self.free])}"
         )

@@ -23,12 +23,18 @@ HAS_TIME_TO_DISCONTINUITY = (
     False  # whether the signal of any channel may jump or bend while its command is held
 )
 HAS_ADVANCE_MOTION_MEMORY = False  # whether any effect remembers the motion of the hull
+HAS_AIR_WRENCH = False  # whether any effect is a force of the air
 HAS_OSCILLATING_FORCE = False  # whether any effect is a random oscillating force
 HAS_INSTRUMENT_DRIFT = False  # whether any instrument has a slowly varying error
 
 
 def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
     """Return the total force of all effects of a vessel, with the actuators act[at:]."""
+    raise NotImplementedError
+
+
+def air_wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
+    """Return the force of the effects of the air on a vessel, with the actuators act[at:]."""
     raise NotImplementedError
 
 

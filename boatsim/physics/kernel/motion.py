@@ -44,6 +44,11 @@ def total_body_force(
     raise NotImplementedError
 
 
+def air_body_force(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[float, ...]:
+    """Return the sum (NQ,) of the body forces of the air, with the actuators act[at:]."""
+    raise NotImplementedError
+
+
 def acceleration_jacobian(
     t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
 ) -> None:

@@ -55,6 +55,22 @@ class FleetArrays(NamedTuple):
     force: Array  # (NQ,) further constant body force [N, N m], the same for all
 
 
+class StepRecord(NamedTuple):
+    """Record of consecutive steps of one vessel, which `record_steps` fills row by row.
+
+    N steps are divided into periods with constant commands.
+    """
+
+    done: Any  # (2,) steps and periods that are recorded
+    ends: Any  # (periods,) number of steps until the end of each period
+    logged: Any  # (N,) 1 for a step of which forces and the velocity of the water are recorded too
+    states: Array  # (N, 13) time and `MeasuredMotion` at the end of the step
+    mean: Array  # (N, actuators) mean actuator positions over the step
+    force: Array  # (N, NQ) body force of all effects at the end of the step [N, N m]
+    air: Array  # (N, NQ) body force of the air [N, N m]
+    water: Array  # (N, 2) velocity of the water over the ground, north and east [m/s]
+
+
 class Inputs(NamedTuple):
     """Row times of a recording and the commands that act on the vessel during it."""
 

@@ -1,5 +1,7 @@
 """Generates `motion.py` of a program: equations of motion and kinematics."""
 
+from functools import cache
+
 from boatsim.physics.kernel.equations import CONSTANTS, EquationWriter
 from boatsim.physics.signals import AXES
 
@@ -13,6 +15,7 @@ from boatsim.physics.signals import MeasuredMotion, Motion
 from .laws import (
     HELD,
     advance_motion_memory,
+    air_wrench,
     water_change,
     water_displacement,
     water_velocity,
@@ -160,7 +163,13 @@ def dynamics_functions(w: EquationWriter) -> list[str]:
         function_text(
             "total_body_force(t, s, act, at, p, on)",
             "Body force (NQ,) of all laws with the actuators act[at:].",
-            w.total_body_force_code(),
+            w.body_force_code("wrench"),
+            "lean",
+        ),
+        function_text(
+            "air_body_force(t, s, act, at, p, on)",
+            "Body force (NQ,) of the laws of the air with the actuators act[at:].",
+            w.body_force_code("air_wrench"),
             "lean",
         ),
         function_text(
@@ -220,6 +229,7 @@ def observation_functions(w: EquationWriter) -> list[str]:
     ]
 
 
+@cache
 def motion_module_text(dof: tuple[str, ...], centred: bool, varying_water: bool = False) -> str:
     """Return the source of `motion.py`, the equations of motion of a vessel.
 

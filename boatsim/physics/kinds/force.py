@@ -1,7 +1,7 @@
 """Force effects: forces of water, air or machines as functions of the motion."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,6 +18,7 @@ WRENCH = ProgramFunction(
     f"Wrench({', '.join(COMPONENTS)})",
     compiled="merged",
 )
+AIR_WRENCH = replace(WRENCH, name="air_wrench", compiled="inlined")
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Force(EffectKind):
     signals by a compiled function `as_<name>`.
     """
 
-    parts: ClassVar = (WRENCH,)
+    parts: ClassVar[tuple[ProgramFunction, ...]] = (WRENCH, AIR_WRENCH)
     laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
     of_air: ClassVar[bool] = False  # a force of the air, logged separately
     # frame to which the force is tied other than the water: "the air", "walls"; empty: none
@@ -45,13 +46,17 @@ class Force(EffectKind):
     ) -> Iterator[str]:
         """Yield the source lines that add the effect's force to the sum of all forces.
 
+        A force of the air is also added to the sum of the forces of the air.
+
         Args:
             part: Function of the compiled program that receives the lines.
             station: Insertion point in that function.
             number: Index of the effect among all effects of the program.
             program: Layout of the program that is generated for the vessel.
         """
-        if part is WRENCH:
+        effect = program.effects[number]
+        of_air = isinstance(effect, Force) and type(effect).of_air
+        if part is WRENCH or (part is AIR_WRENCH and of_air):
             for site in program.law_calls(number):
                 yield f"f = {site.text('law', 'm')}"
                 yield ADD

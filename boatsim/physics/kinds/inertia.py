@@ -20,7 +20,7 @@ class Inertia(EffectKind):
     "hull" for ballast.
     """
 
-    parts: ClassVar = (INERTIAS,)
+    parts: ClassVar[tuple[ProgramFunction, ...]] = (INERTIAS,)
     laws: ClassVar[tuple[str, ...]] = ("inertia",)
     moves_with: ClassVar[str] = "water"
     inertia: ClassVar[Callable[..., MassMatrix]]

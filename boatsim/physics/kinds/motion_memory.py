@@ -34,7 +34,7 @@ class MotionMemory(Force):
     the effect's table. All states are zero at the start of a simulation.
     """
 
-    parts: ClassVar = (ADVANCE_MOTION_MEMORY,)
+    parts: ClassVar[tuple[ProgramFunction, ...]] = (ADVANCE_MOTION_MEMORY,)
     laws: ClassVar[tuple[str, ...]] = ("law", "remember_motion")
     sees_held: ClassVar[bool] = True
     sees_table: ClassVar[bool] = True

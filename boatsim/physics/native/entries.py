@@ -28,6 +28,7 @@ RECORDS: Mapping[Any, Sequence[Kind]] = {
     records.VesselNumbers: (VECTOR, VECTOR, VECTOR),
     records.VesselState: (VECTOR, VECTOR, VECTOR, VECTOR),
     records.FleetArrays: (VECTOR, *[MATRIX] * 5, VECTOR, MATRIX, VECTOR),
+    records.StepRecord: (ROWS, ROWS, ROWS, *[MATRIX] * 5),
     records.Inputs: (VECTOR, VECTOR, MATRIX),
     records.Measurements: (MATRIX, ROWS, VECTOR),
     records.LatentForce: (VECTOR, REAL, VECTOR),
@@ -43,6 +44,7 @@ COMMON: Mapping[str, Entry] = {
     "advance_memory_of_motion": Entry((REAL, VECTOR, REAL, VECTOR, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
+    "air_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "water_displacement": Entry((REAL, VECTOR, VECTOR), tuple_of_numbers),
     "water_velocity": Entry((REAL, REAL, REAL, VECTOR, VECTOR), tuple_of_numbers),
 }
@@ -59,6 +61,7 @@ SIMULATION: Mapping[str, Entry] = {
     "settle_actuators_of_boats": Entry((ROWS, FLEET)),
     "advance_boats": Entry((ROWS, FLEET, REAL, WHOLE)),
     "read_instruments_of_boats": Entry((ROWS, FLEET, MATRIX)),
+    "record_steps": Entry((FLEET, REAL, records.StepRecord)),
 }
 # Only of programs without candidate effects: MuJoCo's callback knows no switches
 ON_MUJOCO: Mapping[str, Entry] = {

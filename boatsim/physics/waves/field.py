@@ -8,6 +8,8 @@ import numpy as np
 from boatsim.physics.signals import Array
 from boatsim.physics.waves.water_path import WaterPath
 
+MOST_TERMS = 100_000  # waves times places that are summed at once, which needs a few megabytes
+
 
 @dataclass(frozen=True)
 class WaveField:
@@ -56,6 +58,8 @@ class WaveField:
     def elevation(self, x: float | Array, y: float | Array, t: float | Array) -> np.float64 | Array:
         """Return the elevation of the surface above the still water.
 
+        That of one place and time does not depend on the others, to the last bit.
+
         Args:
             x: Place along x [m], a number or an array.
             y: Place along y [m], a number or an array.
@@ -65,7 +69,6 @@ class WaveField:
             Elevation [m], positive upward, of the shape to which x, y and t broadcast.
         """
         east, north, time = np.broadcast_arrays(y, x, t)
-        total = np.zeros(north.shape)
         ahead = self.wave_number * np.cos(self.direction)
         aside = self.wave_number * np.sin(self.direction)
         north = north - self.water_velocity[0] * time
@@ -73,13 +76,16 @@ class WaveField:
         for path in self.water_paths:
             moved = path.displacement(time)
             north, east = north - moved[0], east - moved[1]
-        if total.ndim == 0:
-            angle = self.frequency * time - ahead * north - aside * east + self.phase
-            return np.float64(np.sum(self.amplitude * np.cos(angle)))
-        for k in range(len(self)):
-            angle = self.frequency[k] * time - ahead[k] * north - aside[k] * east + self.phase[k]
-            total += self.amplitude[k] * np.cos(angle)
-        return total
+        flat = [np.reshape(values, (-1, 1)) for values in (time, north, east)]
+        total = np.empty(len(flat[0]))
+        most = max(MOST_TERMS // max(len(self), 1), 1)
+        for first in range(0, len(total), most):
+            when, up, right = (values[first : first + most] for values in flat)
+            angle = self.frequency * when - ahead * up - aside * right + self.phase
+            total[first : first + most] = np.sum(self.amplitude * np.cos(angle), axis=1)
+        if np.ndim(time) == 0:
+            return np.float64(total[0])
+        return total.reshape(np.shape(time))
 
     def joined_with(self, other: "WaveField") -> "WaveField":
         """Return the field of the waves of two seas on the same water.
