@@ -42,7 +42,8 @@ def perform_run(task: RunTask) -> Entry:
         failure.
     """
     try:
-        done = run(from_table(task.table, task.place), task.seed, progress=_stop_if_interrupted)
+        scenario = from_table(with_fastest_engine(task.table), task.place)
+        done = run(scenario, task.seed, progress=_stop_if_interrupted)
         if not done.complete:
             raise KeyboardInterrupt
         metrics = all_metrics(done)
@@ -57,6 +58,19 @@ def perform_run(task: RunTask) -> Entry:
         if metric.ok is not None:
             met = metric.ok and met is not False
     return {"failure": None, "met": met, "norms": norms}
+
+
+def with_fastest_engine(table: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a scenario that runs on the compiled engine if it has no walls and states no engine.
+
+    The numbers are those of MuJoCo up to rounding, in about a tenth of the time.
+
+    Args:
+        table: The scenario.
+    """
+    if table.get("tank") or "engine" in table:
+        return table
+    return {**table, "engine": "compiled"}
 
 
 def _finite_or_none(value: float | None) -> float | None:

@@ -16,6 +16,7 @@ from boatsim.simulate.scenario import Scenario, from_table
 from boatsim.sweeps.execute import run_plan
 from boatsim.sweeps.keys import find_target_values, parse_target, set_values
 from boatsim.sweeps.plan import Plan, make_plan
+from boatsim.sweeps.runs import RunTask, perform_run, with_fastest_engine
 from boatsim.sweeps.sampled_keys import parse_sampled_key
 
 RUNS = 6
@@ -147,3 +148,24 @@ def test_a_run_that_diverges_fails_alone_with_its_reason(tmp_path: Path) -> None
     with pytest.raises(BadPhysics) as alone:
         run(from_table(extreme, place), found["seed"][2])
     assert str(alone.value) == found["failure"][2]
+
+
+def test_a_scenario_without_walls_runs_on_the_compiled_engine_by_itself() -> None:
+    bare = {"vessel": "otter", "duration": 5.0}
+    assert with_fastest_engine(bare) == {**bare, "engine": "compiled"}
+    assert with_fastest_engine({**bare, "tank": None})["engine"] == "compiled"
+    walls = {**bare, "tank": {"length": 40.0, "width": 20.0}}
+    assert with_fastest_engine(walls) is walls
+    stated = {**bare, "engine": "mujoco"}
+    assert with_fastest_engine(stated) is stated
+
+
+def test_its_metrics_are_those_of_mujoco_up_to_rounding() -> None:
+    table, place = read_scenario("joystick_boat/sway_1")
+    table = {**table, "tank": None}
+    fast, slow = (
+        perform_run(RunTask(one, place, None)) for one in (table, {**table, "engine": "mujoco"})
+    )
+    assert fast["norms"].keys() == slow["norms"].keys() and fast["norms"]
+    for name, (value, unit) in slow["norms"].items():
+        assert fast["norms"][name] == [pytest.approx(value, rel=1e-6, abs=1e-9), unit]
