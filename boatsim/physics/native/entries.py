@@ -44,7 +44,6 @@ COMMON: Mapping[str, Entry] = {
     "advance_memory_of_motion": Entry((REAL, VECTOR, REAL, VECTOR, VECTOR, VECTOR, VECTOR)),
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
-    "air_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "water_displacement": Entry((REAL, VECTOR, VECTOR), tuple_of_numbers),
     "water_velocity": Entry((REAL, REAL, REAL, VECTOR, VECTOR), tuple_of_numbers),
 }
@@ -61,6 +60,10 @@ SIMULATION: Mapping[str, Entry] = {
     "settle_actuators_of_boats": Entry((ROWS, FLEET)),
     "advance_boats": Entry((ROWS, FLEET, REAL, WHOLE)),
     "read_instruments_of_boats": Entry((ROWS, FLEET, MATRIX)),
+}
+# A library of its own: beside it, a compiler inlines less into the functions of batches
+RECORDING: Mapping[str, Entry] = {
+    "air_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "record_steps": Entry((FLEET, REAL, records.StepRecord)),
 }
 # Only of programs without candidate effects: MuJoCo's callback knows no switches
@@ -96,7 +99,7 @@ ESTIMATION: Mapping[str, Entry] = {
         (records.Inputs, REAL, records.VesselNumbers, ROWS, ROWS, MATRIX, CUBE)
     ),
 }
-LIBRARIES = ("simulation", "estimation")
+LIBRARIES = ("simulation", "recording", "estimation")
 
 
 def library_functions(module: Any, library: str) -> Mapping[str, Entry]:
@@ -110,6 +113,8 @@ def library_functions(module: Any, library: str) -> Mapping[str, Entry]:
     """
     if library == "estimation":
         return ESTIMATION
+    if library == "recording":
+        return RECORDING
     if module.CANDIDATES:
         return SIMULATION
     return {**SIMULATION, **ON_MUJOCO}
