@@ -159,7 +159,9 @@ def _opposite_drives(laws: Mapping[str, OrderLaw]) -> dict[str, str]:
     return opposite
 
 
-def asked_efforts(orders: Mapping[str, Array], laws: Mapping[str, OrderLaw]) -> tuple[Array, Array]:
+def effort_of_orders(
+    orders: Mapping[str, Array], laws: Mapping[str, OrderLaw]
+) -> tuple[Array, Array]:
     """Return the force ahead and the moment (N,) each to which signed orders add up, by their laws.
 
     Args:

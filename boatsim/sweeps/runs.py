@@ -63,7 +63,7 @@ def perform_run(task: RunTask) -> Entry:
 def with_fastest_engine(table: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a scenario that runs on the compiled engine if it has no walls and states no engine.
 
-    The numbers are those of MuJoCo up to rounding, in about a tenth of the time.
+    The numbers are those of MuJoCo up to rounding, in less time (`python -m benchmarks.sweeps`).
 
     Args:
         table: The scenario.

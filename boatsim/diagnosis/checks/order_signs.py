@@ -23,7 +23,7 @@ from boatsim.recordings.order_signs import (
     EFFORT_COLUMNS,
     MIN_ROWS,
     OrderLaw,
-    asked_efforts,
+    effort_of_orders,
     laws_of_unsigned_orders,
     signed_orders,
 )
@@ -122,7 +122,7 @@ def evidence_of_signs(runs: Sequence[tuple[Recording, UnsignedOrders]]) -> dict[
         if not len(surge[0]):  # without it the sign of a force does not show
             continue
         for name, orders in own.possible.items():
-            force, moment = asked_efforts(orders, own.laws)
+            force, moment = effort_of_orders(orders, own.laws)
             gain = _response_evidence(force, recording.t, *surge)
             gain += _response_evidence(moment, recording.t, *yaw)
             total[name] = total.get(name, 0.0) + gain

@@ -61,7 +61,7 @@ SIMULATION: Mapping[str, Entry] = {
     "advance_boats": Entry((ROWS, FLEET, REAL, WHOLE)),
     "read_instruments_of_boats": Entry((ROWS, FLEET, MATRIX)),
 }
-# A library of its own: beside it, a compiler inlines less into the functions of batches
+# A library of its own: without a record of steps or of forces of the air it is not needed
 RECORDING: Mapping[str, Entry] = {
     "air_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "record_steps": Entry((FLEET, REAL, records.StepRecord)),

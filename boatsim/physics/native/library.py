@@ -4,9 +4,8 @@ A C compiler makes the program of a diagnosis in about a tenth of the time that 
 (`python -m benchmarks.native`). Both compute the same numbers to the last bit. There are three
 libraries, `entries.LIBRARIES`: a vessel is simulated with the first one, the steps of a run are
 recorded with the second, and recordings are analysed with the third. Each is compiled when it is
-first needed. numba compiles the program where there is no
-C compiler or it fails, which causes a warning, where a law has no C form, and with
-`BOATSIM_NATIVE=0`.
+first needed. numba compiles the program where there is no C compiler or it fails, which causes a
+warning, where a law has no C form, and with `BOATSIM_NATIVE=0`.
 """
 
 from functools import cache
