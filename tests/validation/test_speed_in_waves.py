@@ -87,7 +87,7 @@ def test_undisturbed_long_wave_lifts_the_hull_by_its_waterplane() -> None:
 def test_heave_at_speed_is_near_that_of_model_tests(tmp_path: Path) -> None:
     pytest.importorskip("capytaine")
     pytest.importorskip("trimesh")
-    table = wigley_speed.SlowTable(tmp_path)
+    table = wigley_speed.slow_table(tmp_path)
     rows = wigley_speed.heave_at_speed(table)
     none, body, terms = (
         wigley_speed.mean_error([(row.measured, row.found[k]) for row in rows]) for k in range(3)

@@ -13,6 +13,7 @@ import numpy as np
 from validation.waves import (
     cylinder,
     drift,
+    dtmb5415,
     hemisphere,
     response,
     righting_arms,
@@ -140,7 +141,7 @@ def print_wigley_pitch(folder: Path) -> None:
 
 def print_wigley_speed(folder: Path) -> None:
     """Print measured and computed heave, damping and loads of a Wigley hull at forward speed."""
-    table = wigley_speed.SlowTable(folder)
+    table = wigley_speed.slow_table(folder)
     print(
         "\nWigley hull III in head waves at forward speed, from coefficients at zero speed, against"
     )
@@ -247,6 +248,119 @@ def print_ship_speed(mss: Path) -> None:
             f"largest difference in {axis}: {', '.join(words)}, loads at zero speed "
             f"{100 * worst:.1f} %"
         )
+
+
+def print_ship_arms(navaltoolbox: Path) -> None:
+    """Print righting arms of a ship next to those of another program."""
+    hull = dtmb5415.loaded_hull(navaltoolbox)
+    print("\nSurface combatant DTMB 5415, righting arms against those of the program GHS (A. K.")
+    print("Ariffin, PhD thesis, 2017, figure 3.15), free in trim")
+    print("heel deg  GZ m    here   error m   trim deg  here, by the bow")
+    rows = dtmb5415.arms(hull)
+    for row in rows:
+        arm, found = row.arm
+        print(
+            f"{row.heel:8.0f}  {arm:.3f}  {found + 0.0:.3f}  {found - arm:+8.3f}"
+            f"  {row.trim[0]:8.2f}  {row.trim[1]:5.2f}"
+        )
+    largest = max(row.arm[0] for row in rows)
+    for limit in (30.0, 60.0):
+        worst = max(abs(row.arm[1] - row.arm[0]) for row in rows if row.heel <= limit)
+        print(
+            f"largest error up to {limit:.0f} deg: {worst:.3f} m, {100 * worst / largest:.1f} % of "
+            "the largest arm"
+        )
+    volume, height = dtmb5415.upright(hull)
+    print(
+        f"volume at a draught of {dtmb5415.DRAUGHT:g} m: {volume:.1f} m^3, published "
+        f"{dtmb5415.VOLUME:.1f} m^3 ({100 * (volume / dtmb5415.VOLUME - 1):+.1f} %)"
+    )
+    slope = rows[1].arm[0] / np.sin(np.radians(rows[1].heel))
+    print(f"GM {height:.3f} m; slope of the first arm of GHS {slope:.3f} m")
+
+
+def print_ship_motions(navaltoolbox: Path) -> None:
+    """Print coefficients and motions of a ship's model next to published ones."""
+    found = dtmb5415.compute(navaltoolbox)
+    table = dtmb5415.table_of_model(navaltoolbox, found)
+    print(
+        "\nIts model DTMB 5512 of 3.048 m at rest, coefficients against a table of another program"
+    )
+    print("(FRyDoM, DTMB5512.hdb5, February 2019); waves from ahead, about the mass centre")
+    print(f"w rad/s  {'  '.join(f'{name:>6}    here' for name in dtmb5415.COLUMNS)}")
+    rows = dtmb5415.coefficient_rows(table)
+    for row in rows:
+        cells = []
+        for published, own in zip(row.published, row.found, strict=True):
+            cells.append(f"{published:6.1f}  {own:6.1f}")
+        print(f"{row.frequency:7.3f}  {'  '.join(cells)}")
+    differences = []
+    for place, name in enumerate(dtmb5415.COLUMNS):
+        published = np.array([row.published[place] for row in rows])
+        own = np.array([row.found[place] for row in rows])
+        worst = np.abs(own - published).max() / published.max()
+        differences.append(f"{name} {100 * worst:.1f} %")
+    print(f"largest difference over the largest value: {', '.join(differences)}")
+    words = []
+    for name, (published, own) in zip(
+        ("C33", "C35", "C55"), dtmb5415.stiffness_pairs(table), strict=True
+    ):
+        words.append(f"{name} {published:.0f} {own:.0f} ({100 * (own / published - 1):+.1f} %)")
+    print(f"stiffness: {', '.join(words)}")
+    print(
+        "\nThe model in head waves against tests (M. Irvine, J. Longo, F. Stern, J. Ship Research"
+    )
+    print("52(2), 2008), values read from figures: heave over the amplitude, pitch over the slope")
+    print("of the wave; methods as for the Wigley hull at forward speed")
+    heads = "  ".join(f"{name:13}" for name in dtmb5415.NAMES)
+    print(f"  Fn    Hz  wave / L  heave  {heads.rstrip()}")
+    motions = dtmb5415.motions(table)
+    for place, axis in enumerate(("heave", "pitch")):
+        if axis == "pitch":
+            print(f"  Fn    Hz  wave / L  pitch  {heads.rstrip()}")
+        for motion in motions:
+            measured = motion.measured[place]
+            cells = []
+            for pair in motion.found:
+                error = 100 * (pair[place] / measured - 1)
+                cells.append(f"{pair[place]:.3f} {error:+4.0f} %")
+            print(
+                f"{motion.froude:4.2f} {motion.encounter:5.3f}  {motion.ratio:8.2f}"
+                f"  {measured:5.3f}  {'   '.join(cells)}"
+            )
+    quarter = 0.25 * dtmb5415.MODEL_LENGTH
+    light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter))
+    print("number of waves with errors up to 10 %, and mean and largest error")
+    print(
+        "gyradius  method         heave, 1 to 2 L     pitch, 1 to 2 L     heave, from 1 L on  "
+        "pitch, from 1 L on"
+    )
+    for gyradius, own_rows in ((dtmb5415.GYRADIUS, motions), (quarter, light)):
+        start = f"{gyradius / dtmb5415.MODEL_LENGTH:6.2f} L"
+        for line in ship_error_lines(own_rows):
+            print(f"{start}  {line}")
+
+
+def ship_error_lines(rows: list[dtmb5415.Motion]) -> list[str]:
+    """Return the errors of the motions of a ship's model in words, one line for each method.
+
+    Args:
+        rows: Measured and computed motions.
+    """
+    lines = []
+    cases = [("at rest", 0, False)]
+    cases += [(name, method, True) for method, name in enumerate(dtmb5415.NAMES)]
+    for name, method, moving in cases:
+        cells = []
+        for longest in (dtmb5415.RESONANT, np.inf):
+            for place in range(2):
+                one = dtmb5415.errors(rows, place, method, longest, moving)
+                cells.append(
+                    f"{one.within:2d} of {one.waves:2d} {100 * one.mean:3.0f} "
+                    f"{100 * one.largest:+4.0f} %"
+                )
+        lines.append(f"{name:14} {'  '.join(cells)}")
+    return lines
 
 
 def print_righting_arms() -> None:
@@ -374,6 +488,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, default=WORK, help="working folder")
     parser.add_argument("--mss", type=Path, help="folder of the MSS toolbox")
+    parser.add_argument("--navaltoolbox", type=Path, help="folder of navaltoolbox-lib")
     given = parser.parse_args()
     folder = given.work
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
@@ -391,6 +506,13 @@ def main() -> None:
         print_ship_speed(given.mss)
     else:
         print("container ship at forward speed: skipped, --mss names the folder of the MSS toolbox")
+    toolbox = given.navaltoolbox
+    if toolbox is not None and (toolbox / dtmb5415.MESH).is_file():
+        print_ship_arms(toolbox)
+        if has_capytaine:
+            print_ship_motions(toolbox)
+    else:
+        print("surface combatant: skipped, --navaltoolbox names the folder of navaltoolbox-lib")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():

@@ -11,23 +11,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
-from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
-from boatsim.physics.base import Array
-from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
-from validation.waves.ship_speed import METHODS, radiation
+from validation.waves.ship_speed import METHODS
+from validation.waves.slow_table import SlowTable, Wave
 from validation.waves.wigley import (
     DENSITY,
     DRAUGHT,
     GYRADIUS,
     HEAD,
-    HEAVE,
     HULLS,
     LENGTH,
-    PITCH,
     half_breadth,
     write_hull,
 )
@@ -68,19 +63,6 @@ LOWEST, HIGHEST, NUMBER = 2.0, 9.0, 22
 POINTS = 60  # of Gauss and Legendre's quadrature over half the length and over the draught
 
 
-class Wave(NamedTuple):
-    """A head wave and the speed at which the hull meets it."""
-
-    frequency: float  # [rad/s]
-    number: float  # [rad/m]
-    speed: float  # [m/s]
-
-    @property
-    def encounter(self) -> float:
-        """Frequency of encounter [rad/s]."""
-        return self.frequency + self.number * self.speed
-
-
 def head_wave(ratio: float, froude: float) -> Wave:
     """Return a head wave.
 
@@ -97,76 +79,23 @@ def froude_speed(froude: float) -> float:
     return froude * float(np.sqrt(GRAVITY * LENGTH))
 
 
-class SlowTable:
-    """Coefficients of the hull at zero speed, between frequencies by splines.
+def slow_table(folder: Path) -> SlowTable:
+    """Return the coefficients of the hull at zero speed.
 
-    Attributes:
-        stiffness: Stiffness (2, 2) in heave and pitch.
-        body: Mass matrix (2, 2).
-        mass: Displaced mass [kg].
+    Args:
+        folder: Working folder.
+
+    Raises:
+        BadInput: Capytaine is not installed.
     """
-
-    def __init__(self, folder: Path) -> None:
-        """Compute the coefficients.
-
-        Args:
-            folder: Working folder.
-
-        Raises:
-            BadInput: Capytaine is not installed.
-        """
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / f"wigley_{HULL.name}.obj"
-        write_hull(path, HULL)
-        mesh = HullMesh(path, DRAUGHT, density=DENSITY)
-        frequencies = [float(w) for w in np.linspace(LOWEST, HIGHEST, NUMBER)]
-        rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
-        found: Coefficients = coefficients_of_rows(rows, mesh, [HEAD])
-        self.mass, depth = found.density * found.volume, DRAUGHT - HULL.centre
-        inertia = self.mass * np.array([1.0, GYRADIUS**2, GYRADIUS**2])
-        own = np.ix_([HEAVE, PITCH], [HEAVE, PITCH])
-        self.stiffness = linear_stiffness(found, self.mass, depth)[own]
-        self.body = rigid_body(self.mass, (0.0, depth), inertia)[own]
-        self._infinite = found.infinite_added_mass[own]
-        w = found.frequency
-        self._added = CubicSpline(w, found.added_mass[:, *own])
-        self._damping = CubicSpline(w, found.damping[:, *own])
-        self._excitation = CubicSpline(w, found.excitation[:, 0, [HEAVE, PITCH]])
-
-    def radiation(self, w: float, speed: float, method: str) -> Array:
-        """Return the force (2, 2) of the radiated waves per motion, with the opposite sign.
-
-        Args:
-            w: Frequency of encounter [rad/s].
-            speed: Forward speed [m/s].
-            method: One of `METHODS`.
-        """
-        return radiation(self._added(w), self._damping(w), self._infinite, w, speed, method)
-
-    def excitation(self, wave: Wave, diffraction: bool = False) -> Array:
-        """Return the complex excitation (2,) in heave and pitch per amplitude [N/m, N].
-
-        Args:
-            wave: The wave.
-            diffraction: Whether it contains the moment of the diffraction at forward speed.
-        """
-        found = np.array(self._excitation(wave.frequency))
-        if diffraction:
-            scattered = found[0] + undisturbed_heave(wave.number)  # z is down
-            found[1] -= wave.speed / (1j * wave.encounter) * scattered
-        return found
-
-    def heave_and_pitch(self, wave: Wave, method: str, diffraction: bool = False) -> Array:
-        """Return the complex motion (2,) per amplitude [m/m, rad/m].
-
-        Args:
-            wave: The wave.
-            method: One of `METHODS`.
-            diffraction: Whether the excitation contains the moment of the diffraction at speed.
-        """
-        w = wave.encounter
-        dynamic = self.stiffness - w * w * self.body + self.radiation(w, wave.speed, method)
-        return np.asarray(np.linalg.solve(dynamic, self.excitation(wave, diffraction)))
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"wigley_{HULL.name}.obj"
+    write_hull(path, HULL)
+    mesh = HullMesh(path, DRAUGHT, density=DENSITY)
+    frequencies = [float(w) for w in np.linspace(LOWEST, HIGHEST, NUMBER)]
+    rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
+    found = coefficients_of_rows(rows, mesh, [HEAD])
+    return SlowTable(found, DRAUGHT - HULL.centre, GYRADIUS, undisturbed_heave)
 
 
 def undisturbed_heave(number: float) -> float:
