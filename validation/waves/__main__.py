@@ -307,27 +307,22 @@ def print_ship_motions(navaltoolbox: Path) -> None:
     ):
         words.append(f"{name} {published:.0f} {own:.0f} ({100 * (own / published - 1):+.1f} %)")
     print(f"stiffness: {', '.join(words)}")
-    print(
-        "\nThe model in head waves against tests (M. Irvine, J. Longo, F. Stern, J. Ship Research"
-    )
-    print("52(2), 2008), values read from figures: heave over the amplitude, pitch over the slope")
-    print("of the wave; methods as for the Wigley hull at forward speed")
-    heads = "  ".join(f"{name:13}" for name in dtmb5415.NAMES)
-    print(f"  Fn    Hz  wave / L  heave  {heads.rstrip()}")
+    print("\nThe model in head waves against tests (M. Irvine, J. Longo, F. Stern, J. Ship")
+    print("Research 52(2), 2008), values read from figures: heave over the amplitude, pitch over")
+    print("the slope of the wave; none: no effect of speed but the frequency of encounter; body:")
+    print("equations of motion in body axes; terms: with the terms of forward speed; diffr.: with")
+    print("the moment of the diffraction at speed too; damp.: as terms, but the damping of pitch")
+    print("at zero speed")
+    heads = "none   body   terms  diffr. damp."
+    print(f"  Fn    Hz  wave / L  heave  {heads}    pitch  {heads}")
     motions = dtmb5415.motions(table)
-    for place, axis in enumerate(("heave", "pitch")):
-        if axis == "pitch":
-            print(f"  Fn    Hz  wave / L  pitch  {heads.rstrip()}")
-        for motion in motions:
-            measured = motion.measured[place]
-            cells = []
-            for pair in motion.found:
-                error = 100 * (pair[place] / measured - 1)
-                cells.append(f"{pair[place]:.3f} {error:+4.0f} %")
-            print(
-                f"{motion.froude:4.2f} {motion.encounter:5.3f}  {motion.ratio:8.2f}"
-                f"  {measured:5.3f}  {'   '.join(cells)}"
-            )
+    for motion in motions:
+        text = []
+        for place, measured in enumerate(motion.measured):
+            cells = [f"{pair[place]:.3f}" for pair in motion.found]
+            text.append(f"{measured:.3f}  {'  '.join(cells)}")
+        start = f"{motion.froude:4.2f} {motion.encounter:5.3f}  {motion.ratio:8.2f}"
+        print(f"{start}  {'    '.join(text)}")
     quarter = 0.25 * dtmb5415.MODEL_LENGTH
     light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter))
     print("number of waves with errors up to 10 %, and mean and largest error")
