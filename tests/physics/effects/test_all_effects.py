@@ -130,9 +130,11 @@ MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
 RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
     "dragged_propeller",  # with the way
+    "drive_fade",  # at the begin of a run
     "push",  # before its time and after
     "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
+    "thrust_fade",  # at the begin of a run
 }
 SI = {"rad", "m", "kg", "s", "N"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
