@@ -64,9 +64,11 @@ class Real:
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
     # share of full thrust, ahead and astern, at which a motor controller limits the current
     most: tuple[float, float] = (1.0, 1.0)
-    fade: float = (
-        0.0  # [1/s] share of the thrust that a battery loses in time, in the mean of a run
-    )
+    fade: float = 0.0  # [1/s] share of the thrust that an emptying battery loses, about 20 s
+    # power of the supply's voltage with which thrust grows; its share of the nominal one at the
+    # begin of a run and at its end
+    supply: float = 0.0
+    charge: tuple[float, float] = (1.0, 1.0)
     walk: float = 0.0  # side force per thrust astern
     cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
     trim: float = 0.0  # [m] by which the hull's own mass is ahead
@@ -136,6 +138,8 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     thrust, builds_up = turned(y[6:], wanted(command[:2], real), real)
     if real.fade:  # it sinks faster at first
         thrust = thrust * (1.0 - 1.1 * real.fade * t / (1.0 + 0.005 * t))
+    if real.supply:  # a part of the voltage is lost in the leads
+        thrust = thrust * (1.1 * voltage(t, real) - 0.1) ** (0.9 * real.supply)
     steer = command[2:] + np.array(real.bent) * np.cos(command[2:])  # a rod of the wrong length
     force = pushed(thrust, steer, real) + damped(nu, real) + held(y, c, s, real)
     separated = 1.1 - 0.3 * nu[1] ** 2 / (
@@ -153,6 +157,12 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     return np.concatenate(
         [[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force), builds_up]
     )
+
+
+def voltage(t: float, real: Real) -> float:
+    """Voltage of the supply over the nominal one: other consumers come and go."""
+    full, empty = real.charge
+    return full + (empty - full) * t / 40.0 + 0.03 * sin(0.5 * t) * cos(0.13 * t)
 
 
 def stowed(real: Real) -> tuple[tuple[float, float], ...]:

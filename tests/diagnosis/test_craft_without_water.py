@@ -29,6 +29,7 @@ FANS = {
     "c2": (-0.009, 0.045, np.pi / 6),
 }
 RATE, ROWS = 40.0, 900
+NOMINAL = 7.4  # [V] of the battery
 FULL = 0.7  # thrust of a fan at the largest command [N]
 WATER = {"current", "wave_forcing", "added_mass", "prop_walk", "cross_flow_drag", "planing_lag"}
 TESTED = (
@@ -40,7 +41,7 @@ TESTED = (
 )
 
 
-def craft(facts: dict[str, object]) -> Vessel:
+def craft(facts: dict[str, object], **more: object) -> Vessel:
     effects = []
     for fan, (x, y, angle) in FANS.items():
         on = {"thrust": f"{fan}_N", "angle": float(angle)}
@@ -55,10 +56,13 @@ def craft(facts: dict[str, object]) -> Vessel:
         effects=effects,
         channels={f"{fan}_N": {"low": 0.0, "high": FULL} for fan in FANS},
         diagnosis={"facts": facts},
+        **more,
     )
 
 
-CRAFT = craft({"no_water": True, "indoors": True, "moored": False})
+FACTS: dict[str, object] = {"no_water": True, "indoors": True, "moored": False}
+CRAFT = craft(FACTS)
+ELECTRIC = craft(FACTS, measured={"battery_V": {"neutral": NOMINAL}})
 
 
 def floated(
@@ -73,13 +77,16 @@ def floated(
     limits: Array | None = None,
     strongest: float = 0.25,
     fades: Array | None = None,
+    power: float = 0.0,
+    charge: tuple[float, float] = (1.0, 1.0),
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
     `lags` are time constants of the fans [s], `delays` their dead times in rows, `rates` the
     largest rates of their thrust [N/s], `powers` the exponents of their curves, and `limits` the
     largest thrusts [N]. The commands are up to `strongest` [N]. `fades` are the shares of the thrust
-    that the fans lose in a second.
+    that the fans lose in a second. The thrust is a `power` of the voltage of the battery, whose
+    share of the nominal one at begin and end is `charge`.
     """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, strongest, (ROWS // 10, len(FANS))), 10, axis=0)
@@ -93,6 +100,8 @@ def floated(
     ordered = FULL * (ordered / FULL) ** (np.ones(len(FANS)) if powers is None else powers)
     if limits is not None:
         ordered = np.minimum(ordered, limits)
+    level = np.linspace(*charge, ROWS) + 0.03 * np.sin(np.arange(ROWS) / RATE)
+    ordered = ordered * level[:, None] ** power
     if fades is not None:
         ordered = ordered * (1.0 - fades * np.arange(ROWS)[:, None] / RATE)
     fastest = np.full(len(FANS), np.inf) if rates is None else rates
@@ -119,13 +128,16 @@ def floated(
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [3e-4, 3e-4, 2e-3]
     signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
     signals |= {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
+    signals["battery_V"] = NOMINAL * level + 0.02 * rng.standard_normal(ROWS)
     return Recording(f"flight_{seed}", np.arange(ROWS) / RATE, signals, Notes())
 
 
-def ranked(*recordings: Recording, tested: tuple[str, ...] = TESTED) -> Ranking:
-    program = Program(CRAFT, candidate_library(CRAFT).compiled_effects)
+def ranked(
+    *recordings: Recording, tested: tuple[str, ...] = TESTED, boat: Vessel = CRAFT
+) -> Ranking:
+    program = Program(boat, candidate_library(boat).compiled_effects)
     mapped = [map_recording(recording, program) for recording in recordings]
-    problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
+    problem = Problem(mapped, prior_noise_levels(boat, recordings), {"thrust": 0.05})
     return select_and_rank_candidates(problem, tested)
 
 
@@ -276,3 +288,18 @@ def test_a_thrust_of_all_fans_that_fades_is_one_cause_and_none_where_it_does_not
     value, sd = ranking.best.value("thrust_fade", "rate")
     assert abs(value - 0.01) < max(4.0 * sd, 0.01 * 0.01)
     assert ranked(floated(3), floated(4), tested=FADES).named == ()
+
+
+@pytest.mark.slow
+def test_the_power_of_the_voltage_is_found_and_none_where_the_thrust_does_not_depend_on_it() -> (
+    None
+):
+    tested = (*FADES, "thrust_with_voltage")
+    charges = ((1.08, 0.98), (0.95, 0.85))
+    made = [floated(seed, power=1.6, charge=one) for seed, one in enumerate(charges, 1)]
+    ranking = ranked(*made, tested=tested, boat=ELECTRIC)
+    assert [one.name for one in ranking.named] == ["thrust_with_voltage"]
+    value, sd = ranking.best.value("thrust_with_voltage", "exponent")
+    assert abs(value - 1.6) < max(4.0 * sd, 0.02)
+    sound = [floated(seed, charge=one) for seed, one in enumerate(charges, 3)]
+    assert ranked(*sound, tested=tested, boat=ELECTRIC).named == ()

@@ -16,9 +16,10 @@ from boatsim.physics.base import (
 from boatsim.physics.kinds.channel import COMMANDS
 from boatsim.physics.param import name_code_parameter
 
-# Half width of the rounded corner, as a share of the largest command. It is of the size of the usual
-# speed droop of governors; with a sharp corner the likelihood of a limit would have a kink at each
-# commanded level. Near a share of 1 it shrinks with the distance to it, so that the effect vanishes.
+# Half width of the rounded corner, as a share of the largest command. It is of the size of the
+# usual speed droop of governors; with a sharp corner the likelihood of a limit would have a kink
+# at each commanded level. Near a share of 1 it shrinks with the distance to it, so that the effect
+# vanishes there.
 ROUNDED = 0.03
 EARLIEST = 0.1  # smallest share: below it a drive is not limited but broken
 

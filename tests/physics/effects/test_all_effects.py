@@ -136,7 +136,7 @@ RESTS = {  # effects that are not always there
     "rudder_race",  # of a propeller that backs
     "thrust_fade",  # at the begin of a run
 }
-SI = {"rad", "m", "kg", "s", "N"}
+SI = {"rad", "m", "kg", "s", "N", "V"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
 CURRENT = Path(__file__).parents[2] / "data" / "current.csv"
 COEFFICIENTS, MESH = OTTER / "hydrodynamics", OTTER / "hull.obj"
