@@ -118,7 +118,7 @@ class ThrustLimit(ChannelEffect):
         fit=True,
         spread=0.4,
         inactive_value=1.0,
-        in_per_cent="the thrust ahead is limited to {share} of the largest command",
+        in_per_cent="the thrust ahead reaches at most {share} of the largest command",
     )
     astern: float = param(
         1.0,
@@ -129,7 +129,7 @@ class ThrustLimit(ChannelEffect):
         fit=True,
         spread=0.4,
         inactive_value=1.0,
-        in_per_cent="the thrust astern is limited to {share} of the largest command",
+        in_per_cent="the thrust astern reaches at most {share} of the largest command",
     )
     full_ahead: float = name_code_parameter("largest command ahead")
     full_astern: float = name_code_parameter("largest command astern")
