@@ -62,6 +62,13 @@ class Real:
     dead: float = 0.0  # [N] of command that friction takes
     throttle: bool = False  # commands set the revolutions, whose square is the thrust
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
+    # share of full thrust, ahead and astern, at which a motor controller limits the current
+    most: tuple[float, float] = (1.0, 1.0)
+    fade: float = 0.0  # [1/s] share of the thrust that an emptying battery loses, about 20 s
+    # power of the supply's voltage with which thrust grows; its share of the nominal one at the
+    # begin of a run and at its end
+    supply: float = 0.0
+    charge: tuple[float, float] = (1.0, 1.0)
     walk: float = 0.0  # side force per thrust astern
     cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
     trim: float = 0.0  # [m] by which the hull's own mass is ahead
@@ -129,6 +136,10 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     c, s = cos(psi), sin(psi)
     solid, water = inertias(real)
     thrust, builds_up = turned(y[6:], wanted(command[:2], real), real)
+    if real.fade:  # it sinks faster at first
+        thrust = thrust * (1.0 - 1.1 * real.fade * t / (1.0 + 0.005 * t))
+    if real.supply:  # a part of the voltage is lost in the leads
+        thrust = thrust * (1.1 * voltage(t, real) - 0.1) ** (0.9 * real.supply)
     steer = command[2:] + np.array(real.bent) * np.cos(command[2:])  # a rod of the wrong length
     force = pushed(thrust, steer, real) + damped(nu, real) + held(y, c, s, real)
     separated = 1.1 - 0.3 * nu[1] ** 2 / (
@@ -146,6 +157,12 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     return np.concatenate(
         [[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force), builds_up]
     )
+
+
+def voltage(t: float, real: Real) -> float:
+    """Voltage of the supply over the nominal one: other consumers come and go."""
+    full, empty = real.charge
+    return full + (empty - full) * t / 40.0 + 0.03 * sin(0.5 * t) * cos(0.13 * t)
 
 
 def stowed(real: Real) -> tuple[tuple[float, float], ...]:
@@ -183,6 +200,9 @@ def wanted(command: Array, real: Real) -> Array:
     free = command - real.dead * np.tanh(command / real.dead) if real.dead else command
     if real.throttle:
         free = free * abs(free)  # full thrust is 1 N
+    if real.most != (1.0, 1.0):  # the limit sets in gradually
+        limit = np.where(free > 0.0, *real.most)
+        free = free / (1.0 + (abs(free) / limit) ** 12) ** (1 / 12)
     return np.asarray(free * (1.0 + (np.array(real.power) - 1.0) * (0.6 + 0.6 * abs(command))))
 
 

@@ -25,6 +25,8 @@ from boatsim.recordings.importing.mapping import read_map
 from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
+from boatsim.recordings.importing.voltages import voltage_lines
+from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import read, write_csv
 from boatsim.simulate.manoeuvre import approach_speed
 
@@ -153,6 +155,9 @@ def _measured_lines(boat: Vessel, log: Log) -> str:
             lines += f'{name} = "{name}"\n'
             continue
         words = about.about or "measured, not commanded"
+        if unit_of(name) == "V":
+            lines += voltage_lines(name, words, log)
+            continue
         lines += f'# {name} = "..."  # CHECK: {words}\n'
         if name.endswith("_m"):
             lines += (

@@ -146,8 +146,9 @@ def candidate_library(
             instantiate_candidate(kind, vessel, known, source.table), vessel
         ):
             entries[effect.name] = effect
-            if reason:
-                excluded[effect.name] = reason
+            unusable = reason or _unrecorded_sources(effect, columns)
+            if unusable:
+                excluded[effect.name] = unusable
     together = replace(vessel, effects=(*vessel.effects, *entries.values()))
     check_bindings(together, f"{vessel.name}: library")
     placeholders = placeholder_effects(vessel, config.describe)
@@ -218,7 +219,7 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
         kind: type[Effect] = load_class("effect", name)
         instances = single_subjects(kind, vessel)
         if len(instances) < fewest:
-            yield _Source({"use": name}, kind, False)
+            yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, False)
             continue
         for instance in instances:
             table: dict[str, object] = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
@@ -228,6 +229,20 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
         yield _Source(with_absolute_paths(requested, table, vessel.path), requested, True)
     for name in own:
         yield _Source({"use": name}, load_class("effect", name, named=True), True)
+
+
+def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, object]:
+    """Settings that bind a channel effect to the measured quantities that feed it, if it needs any.
+
+    They are empty where the vessel measures none that matches.
+    """
+    if not issubclass(kind, ChannelEffect) or not kind.measured_unit:
+        return {}
+    actuators = vessel.target_actuators(instantiate_neutral_effect(kind))
+    found = vessel.matching_measurements(actuators, kind.measured_unit)
+    if not found:
+        return {}
+    return {"on": list(found), "fed_by": list(found.values())}
 
 
 def single_subjects(kind: type[Effect], vessel: Vessel) -> list[str]:
@@ -263,6 +278,16 @@ def _unrecorded_columns(kind: type[Effect], columns: Sequence[str] | None) -> st
     if set(kind.of_columns) & set(columns):
         return ""
     return f"no column {' or '.join(kind.of_columns)} was recorded"
+
+
+def _unrecorded_sources(effect: Effect, columns: Sequence[str] | None) -> str:
+    """The measured quantities that feed a channel effect, if they were not recorded, in words."""
+    if columns is None or not isinstance(effect, ChannelEffect) or not type(effect).measured_unit:
+        return ""
+    missing = [name for name in dict.fromkeys(effect.fed_by) if name not in columns]
+    if not missing:
+        return ""
+    return f"no column {' and '.join(missing)} was recorded"
 
 
 def _missing_columns(kind: type[Effect], columns: Sequence[str] | None) -> str:
@@ -315,6 +340,11 @@ def missing_requirements(
     if kind.alone and vessel.names_of(kind.type_name()):
         own = vessel.names_of(kind.type_name())[0]
         return f"the vessel has its own {own}, whose parameters other candidates adjust"
+    if issubclass(kind, ChannelEffect) and kind.measured_unit and not table.get("fed_by"):
+        return (
+            f"no measured quantity in {kind.measured_unit} is in [measured], or none can be "
+            "assigned to each drive by its name"
+        )
     try:
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:

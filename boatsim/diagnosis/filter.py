@@ -930,7 +930,8 @@ def _missing_inputs(recording: Recording, vessel: Vessel) -> list[str]:
         columns = list(dict.fromkeys((*commands, actuator)))
         if not any(name in recording.signals for name in columns):
             missing.append(" or ".join(columns))
-    return missing + [name for name in vessel.readings if name not in recording.signals]
+    measured = dict.fromkeys((*vessel.readings, *vessel.feeding_measurements))
+    return missing + [name for name in measured if name not in recording.signals]
 
 
 def _drives(vessel: Vessel, command: str, actuator: str) -> bool:

@@ -23,6 +23,7 @@ NAMED: Mapping[str, BaseUnit] = {
     "s": BaseUnit({"s": 1}),
     "rad": BaseUnit({"rad": 1}),
     "N": BaseUnit({"kg": 1, "m": 1, "s": -2}),
+    "V": BaseUnit({"kg": 1, "m": 2, "s": -3, "A": -1}),
     "1": BaseUnit({}),
     "us": BaseUnit({"s": 1}, 1e-6),
     "rpm": BaseUnit({"rad": 1, "s": -1}, 2.0 * pi / 60.0),
@@ -41,6 +42,7 @@ SUFFIXES = {
     "rps": "rps",
     "s": "s",
     "us": "us",
+    "V": "V",
 }
 FACTOR = re.compile(r"([A-Za-z]+|1)(?:\^(\d+))?")
 

@@ -128,16 +128,17 @@ class Composition:
         """
         return self.vessel.target_actuators(self.effects[number])
 
-    def command_for_actuator(self, number: int, actuator: str) -> str | None:
-        """Return the raw command that feeds an actuator through a channel effect, or None.
+    def source_for_actuator(self, number: int, actuator: str) -> str | None:
+        """Return the input that feeds an actuator through a channel effect, or None.
 
-        An example is the PWM command from which a drive curve computes the thrust.
+        Examples are the PWM command from which a drive curve computes the thrust, and the measured
+        voltage of its supply.
 
         Args:
             number: Index of the effect in the program.
             actuator: Name of the actuator.
         """
-        return self.vessel.command_for_actuator(self.effects[number], actuator)
+        return self.vessel.source_for_actuator(self.effects[number], actuator)
 
     def side(self, actuator: str) -> float:
         """Return the side of the hull on which an actuator acts: -1 port, 0 middle, +1 starboard.

@@ -6,6 +6,7 @@ no entry, because they differ in channel and kind of error only.
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from boatsim.physics import content
 from boatsim.physics.base import Effect
 from boatsim.physics.effects.sensor_error import SensorError
 from boatsim.physics.vessel import Vessel, load_vessel
+from boatsim.physics.vessel.schema import MeasuredChannel
 
 FILE = Path(__file__).with_name("effect_cases.toml")
 Case = Mapping[str, Any]
@@ -76,6 +78,9 @@ def _channel_case(kind: type[SensorError]) -> Case:
 def vessel_of(case: Case) -> Vessel:
     """Return the vessel of a case without the change by its effect."""
     boat = load_vessel(case.get("vessel", VESSEL), case.get("load", []))
+    measured = {name: MeasuredChannel(neutral=x) for name, x in case.get("measured", {}).items()}
+    if measured:
+        boat = replace(boat, measured=measured)
     return boat.with_parameters(case.get("set", {}))
 
 

@@ -67,6 +67,9 @@ def _vessel_lines(name: str, case: Case) -> list[str]:
     if "load" in case:
         arguments += f", {json.dumps(case['load'])}"
     lines = [f"boat = boatsim.load_vessel({arguments})"]
+    for channel, neutral in case.get("measured", {}).items():
+        lines.append(f'measured = {{"{channel}": MeasuredChannel(neutral={neutral!r})}}')
+        lines.append("boat = dataclasses.replace(boat, measured=measured)")
     if "set" in case:
         lines.append(f"boat = boat.with_parameters({_table(case['set'])})")
     if "add" in case:
@@ -106,6 +109,9 @@ def _running_program(name: str, case: Case) -> str:
     if vessel in STARTS:
         keys += f", start={json.dumps(STARTS[vessel])}"
     lines = ["import boatsim", "", *_vessel_lines(name, case)]
+    if "measured" in case:
+        schema = "from boatsim.physics.vessel.schema import MeasuredChannel"
+        lines = ["import dataclasses", "", "import boatsim", schema, *lines[1:]]
     if goal:
         lines.append(f"goal = [{_table(goal)}]")
         keys += ", goal=goal"

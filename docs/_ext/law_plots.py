@@ -245,7 +245,8 @@ def _channel_plot(name: str, case: Case) -> str:
         curves = [Curve("command", shown, factor * command, "reference")]
         curves.append(Curve("output", shown, factor * output, "one"))
     elif spec["over"] == "source":
-        curves = [Curve("", shown, factor * _outputs(effect, np.zeros_like(x), x, 1.0, 0.0))]
+        command = np.full_like(x, spec.get("command", 0.0))
+        curves = [Curve("", shown, factor * _outputs(effect, command, x, 1.0, 0.0))]
     else:
         sides = {"output": 1.0}
         if spec.get("sides"):

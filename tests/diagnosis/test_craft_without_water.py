@@ -29,6 +29,7 @@ FANS = {
     "c2": (-0.009, 0.045, np.pi / 6),
 }
 RATE, ROWS = 40.0, 900
+NOMINAL = 7.4  # [V] of the battery
 FULL = 0.7  # thrust of a fan at the largest command [N]
 WATER = {"current", "wave_forcing", "added_mass", "prop_walk", "cross_flow_drag", "planing_lag"}
 TESTED = (
@@ -40,7 +41,7 @@ TESTED = (
 )
 
 
-def craft(facts: dict[str, object]) -> Vessel:
+def craft(facts: dict[str, object], **more: object) -> Vessel:
     effects = []
     for fan, (x, y, angle) in FANS.items():
         on = {"thrust": f"{fan}_N", "angle": float(angle)}
@@ -55,10 +56,13 @@ def craft(facts: dict[str, object]) -> Vessel:
         effects=effects,
         channels={f"{fan}_N": {"low": 0.0, "high": FULL} for fan in FANS},
         diagnosis={"facts": facts},
+        **more,
     )
 
 
-CRAFT = craft({"no_water": True, "indoors": True, "moored": False})
+FACTS: dict[str, object] = {"no_water": True, "indoors": True, "moored": False}
+CRAFT = craft(FACTS)
+ELECTRIC = craft(FACTS, measured={"battery_V": {"neutral": NOMINAL}})
 
 
 def floated(
@@ -70,14 +74,22 @@ def floated(
     delays: Array | None = None,
     rates: Array | None = None,
     powers: Array | None = None,
+    limits: Array | None = None,
+    strongest: float = 0.25,
+    fades: Array | None = None,
+    power: float = 0.0,
+    charge: tuple[float, float] = (1.0, 1.0),
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
     `lags` are time constants of the fans [s], `delays` their dead times in rows, `rates` the
-    largest rates of their thrust [N/s], and `powers` the exponents of their curves.
+    largest rates of their thrust [N/s], `powers` the exponents of their curves, and `limits` the
+    largest thrusts [N]. The commands are up to `strongest` [N]. `fades` are the shares of the thrust
+    that the fans lose in a second. The thrust is a `power` of the voltage of the battery, whose
+    share of the nominal one at begin and end is `charge`.
     """
     rng = np.random.default_rng(seed)
-    commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
+    commands = np.repeat(rng.uniform(0.0, strongest, (ROWS // 10, len(FANS))), 10, axis=0)
     x, y, angle = np.array(list(FANS.values())).T
     strengths = np.ones(len(FANS)) if gains is None else gains
     lags = np.zeros(len(FANS)) if lags is None else lags
@@ -86,6 +98,12 @@ def floated(
         ordered[late:, i] = commands[: ROWS - late, i]
         ordered[:late, i] = commands[0, i]
     ordered = FULL * (ordered / FULL) ** (np.ones(len(FANS)) if powers is None else powers)
+    if limits is not None:
+        ordered = np.minimum(ordered, limits)
+    level = np.linspace(*charge, ROWS) + 0.03 * np.sin(np.arange(ROWS) / RATE)
+    ordered = ordered * level[:, None] ** power
+    if fades is not None:
+        ordered = ordered * (1.0 - fades * np.arange(ROWS)[:, None] / RATE)
     fastest = np.full(len(FANS), np.inf) if rates is None else rates
 
     def thrust_after(time: float, order: Array, begin: Array) -> Array:
@@ -110,13 +128,16 @@ def floated(
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [3e-4, 3e-4, 2e-3]
     signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
     signals |= {f"{fan}_N": commands[:, i] for i, fan in enumerate(FANS)}
+    signals["battery_V"] = NOMINAL * level + 0.02 * rng.standard_normal(ROWS)
     return Recording(f"flight_{seed}", np.arange(ROWS) / RATE, signals, Notes())
 
 
-def ranked(*recordings: Recording, tested: tuple[str, ...] = TESTED) -> Ranking:
-    program = Program(CRAFT, candidate_library(CRAFT).compiled_effects)
+def ranked(
+    *recordings: Recording, tested: tuple[str, ...] = TESTED, boat: Vessel = CRAFT
+) -> Ranking:
+    program = Program(boat, candidate_library(boat).compiled_effects)
     mapped = [map_recording(recording, program) for recording in recordings]
-    problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
+    problem = Problem(mapped, prior_noise_levels(boat, recordings), {"thrust": 0.05})
     return select_and_rank_candidates(problem, tested)
 
 
@@ -134,7 +155,7 @@ def test_slope_and_yaw_inertia_are_candidates_only_without_water():
 
 def test_each_drive_is_a_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
-    for effect in ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent"):
+    for effect in ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent", "drive_limit"):
         names |= {f"{effect}_{fan}_N" for fan in FANS}
     assert names <= set(candidate_library(CRAFT).tested_names)
     two = candidate_library(vessel.load_vessel("trial_boat"))
@@ -227,3 +248,58 @@ def test_the_exponent_of_one_fan_is_found_with_the_fan() -> None:
     assert [one.name for one in ranking.named] == ["drive_exponent_b1_N"]
     value, sd = ranking.best.value("drive_exponent_b1_N", "exponent")
     assert abs(value - 1.5) < max(4.0 * sd, 0.05)
+
+
+LIMITS = (*CURVES, "thrust_limit", *(f"drive_limit_{fan}_N" for fan in FANS))
+
+
+@pytest.mark.slow
+def test_the_limit_of_one_fan_is_found_with_the_fan() -> None:
+    limits = np.where(FAN, 0.4 * FULL, FULL)
+    made = [floated(seed, limits=limits, strongest=FULL) for seed in (1, 2)]
+    ranking = ranked(*made, tested=LIMITS)
+    assert [one.name for one in ranking.named] == ["drive_limit_b1_N"]
+    value, sd = ranking.best.value("drive_limit_b1_N", "ahead")
+    assert abs(value - 0.4) < max(4.0 * sd, 0.01)
+
+
+@pytest.mark.slow
+def test_no_limit_is_found_where_the_fans_reach_their_full_thrust() -> None:
+    assert ranked(*(floated(seed, strongest=FULL) for seed in (3, 4)), tested=LIMITS).named == ()
+
+
+FADES = (*LIMITS, "thrust_fade", *(f"drive_fade_{fan}" for fan in FANS))
+
+
+@pytest.mark.slow
+def test_the_fan_whose_thrust_fades_is_found() -> None:
+    fades = np.where(FAN, 0.02, 0.0)
+    ranking = ranked(floated(1, fades=fades), floated(2, fades=fades), tested=FADES)
+    assert [one.name for one in ranking.named] == ["drive_fade_b1"]
+    value, sd = ranking.best.value("drive_fade_b1", "rate")
+    assert abs(value - 0.02) < max(4.0 * sd, 0.01 * 0.02)
+
+
+@pytest.mark.slow
+def test_a_thrust_of_all_fans_that_fades_is_one_cause_and_none_where_it_does_not() -> None:
+    fades = np.full(len(FANS), 0.01)
+    ranking = ranked(floated(1, fades=fades), floated(2, fades=fades), tested=FADES)
+    assert [one.name for one in ranking.named] == ["thrust_fade"]
+    value, sd = ranking.best.value("thrust_fade", "rate")
+    assert abs(value - 0.01) < max(4.0 * sd, 0.01 * 0.01)
+    assert ranked(floated(3), floated(4), tested=FADES).named == ()
+
+
+@pytest.mark.slow
+def test_the_power_of_the_voltage_is_found_and_none_where_the_thrust_does_not_depend_on_it() -> (
+    None
+):
+    tested = (*FADES, "thrust_with_voltage")
+    charges = ((1.08, 0.98), (0.95, 0.85))
+    made = [floated(seed, power=1.6, charge=one) for seed, one in enumerate(charges, 1)]
+    ranking = ranked(*made, tested=tested, boat=ELECTRIC)
+    assert [one.name for one in ranking.named] == ["thrust_with_voltage"]
+    value, sd = ranking.best.value("thrust_with_voltage", "exponent")
+    assert abs(value - 1.6) < max(4.0 * sd, 0.02)
+    sound = [floated(seed, charge=one) for seed, one in enumerate(charges, 3)]
+    assert ranked(*sound, tested=tested, boat=ELECTRIC).named == ()

@@ -128,6 +128,7 @@ def test_each_unit_of_the_library_is_known_in_base_units() -> None:
     for unit in units - {""}:
         base_unit(unit)
     assert base_unit("N s^2/m^2").exponents == {"kg": 1, "m": -1}
+    assert base_unit("V").exponents == base_unit("N m/s").exponents | {"A": -1}  # W = V A
     assert base_unit("rpm").factor == pytest.approx(2 * np.pi / 60)
     with pytest.raises(BadInput, match="'furlong' is not known"):
         base_unit("furlong/s")

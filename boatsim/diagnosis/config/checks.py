@@ -66,6 +66,29 @@ class ChecksConfig:
         "Speed from which a boat counts as moving; one that is aground or at a line does not.",
         0.0,
     )
+    voltage_least_share: float = setting(
+        0.5,
+        "1",
+        "Share of the median of a measured voltage below which a reading is an outlier. A battery "
+        "in use stays within a third of its usual voltage; a drive that runs has no less.",
+        0.0,
+        1.0,
+    )
+    voltage_largest_share: float = setting(
+        1.5,
+        "1",
+        "Share of the median of a measured voltage above which a reading is an outlier, for the "
+        "same reason.",
+        low=1.0,
+    )
+    voltage_outlier_share: float = setting(
+        0.2,
+        "1",
+        "Share of the readings of a voltage up to which they are outliers. More of them are no "
+        "errors of single rows: the supply was off, or another one was measured.",
+        0.0,
+        0.5,
+    )
     push_threshold: float = setting(
         6.0,
         "sd",

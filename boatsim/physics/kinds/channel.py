@@ -110,7 +110,8 @@ class ChannelEffect(EffectKind):
 
     `transform_signal(x, side, source, memory, at, dt, values)`, compiled, returns a
     `SignalSegment`. x is the signal so far over the step dt [s] that begins now; side is -1 port,
-    +1 starboard, 0 on the centreline; source is the raw command of `fed_by` for the signal;
+    +1 starboard, 0 on the centreline; source is the raw command, or the measured quantity, of
+    `fed_by` for the signal;
     memory[at:at + slots] is the memory of this actuator.
 
     `time_to_discontinuity(x, memory, at, values)`, if defined, is the time [s] for which the three
@@ -135,11 +136,15 @@ class ChannelEffect(EffectKind):
     acts_astern: ClassVar[bool] = False
     # whether it differs from another effect only if the limits ahead and astern are not the same
     limits_differ: ClassVar[bool] = False
+    # unit of the measured quantities that feed it, as in the names of their columns ("V"); "":
+    # commands feed it
+    measured_unit: ClassVar[str] = ""
     time_to_discontinuity: ClassVar[Callable[..., float] | None] = None
     present_output: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., SignalSegment]]
 
-    # commands that feed the channels in `on`, one for each
+    # commands that feed the channels in `on`, one for each; of an effect with `measured_unit`
+    # measured quantities
     fed_by: Sequence[str] = field(default=(), kw_only=True)
     # acts on the other side of the actuator than by default
     other_side: bool = field(default=False, kw_only=True)
@@ -211,7 +216,7 @@ class ChannelEffect(EffectKind):
         # a typed integer, because numba compiles literal integers as types
         at = f"np.int64({program.memory_offset(number, station.channel)})"
         site = program.law_calls(number)[0]
-        source = program.command_for_actuator(number, station.channel)
+        source = program.source_for_actuator(number, station.channel)
         raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
         side = str(program.side(station.channel))
         if part is ADVANCE:

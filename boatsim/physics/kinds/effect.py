@@ -433,6 +433,9 @@ class Boat(Protocol):
     def limits(self) -> Mapping[str, tuple[float, float]]:
         """Return the allowed range (low, high) of each input of the vessel, by name."""
 
+    def neutral_value(self, name: str) -> float:
+        """Return the value of an input of the vessel where nothing is sent or measured."""
+
     def target_actuators(self, effect: Effect) -> tuple[str, ...]:
         """Return the actuators whose signals a channel effect changes."""
 
@@ -493,10 +496,11 @@ class ProgramLayout(Protocol):
     def target_actuators(self, number: int) -> Sequence[str]:
         """Return the names of the actuators whose signals a given channel effect changes."""
 
-    def command_for_actuator(self, number: int, actuator: str) -> str | None:
-        """Return the raw command that feeds an actuator through a channel effect, or None.
+    def source_for_actuator(self, number: int, actuator: str) -> str | None:
+        """Return the input that feeds an actuator through a channel effect, or None.
 
-        An example is the PWM command from which a drive curve computes the thrust.
+        Examples are the PWM command from which a drive curve computes the thrust, and the measured
+        voltage of its supply.
         """
 
     def side(self, actuator: str) -> float:

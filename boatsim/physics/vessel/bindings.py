@@ -1,6 +1,6 @@
 """Channel bindings of a vessel: which commands and measured signals each effect acts on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf
@@ -328,9 +328,78 @@ class ChannelBindings:
         Returns:
             Name of the command; None if the effect is not fed by a command for this actuator.
         """
+        source = self.source_for_actuator(effect, actuator)
+        if source in self.commands:
+            return source
+        return None
+
+    def source_for_actuator(self, effect: Effect, actuator: str) -> str | None:
+        """Return the name of the input that feeds an actuator through a channel effect.
+
+        It is a raw command, or a measured quantity such as the voltage of the supply.
+
+        Args:
+            effect: An effect of the vessel.
+            actuator: Name of the actuator.
+
+        Returns:
+            Name of the input; None if nothing feeds the actuator through the effect.
+        """
         if not isinstance(effect, ChannelEffect) or actuator not in effect.on:
             return None
         return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)
+
+    @property
+    def feeding_measurements(self) -> tuple[str, ...]:
+        """Names of the measured quantities that feed channel effects of the vessel."""
+        fed_by = set[str]()
+        for effect in self.effects:
+            if isinstance(effect, ChannelEffect):
+                fed_by.update(effect.fed_by)
+        return tuple(filter(fed_by.__contains__, self.measured))
+
+    def matching_measurements(self, actuators: Sequence[str], unit: str) -> dict[str, str]:
+        """Return the measured quantity of a unit that belongs to each of some actuators.
+
+        The only one belongs to all of them. Of several, an actuator has the one with which its name
+        shares most words: `battery_port_V` belongs to `thrust_port_N`.
+
+        Args:
+            actuators: Names of actuators.
+            unit: Unit at the end of the names of the quantities, such as "V".
+
+        Returns:
+            Measured quantity by the name of the actuator; empty where one has none, or has two that
+            match equally well.
+        """
+        names = [name for name in self.measured if name.rpartition("_")[2] == unit]
+        if len(names) == 1:
+            return dict.fromkeys(actuators, names[0])
+        found = {}
+        for actuator in actuators:
+            words = set(actuator.split("_")[:-1])
+            shared = {name: len(words & set(name.split("_")[:-1])) for name in names}
+            most = max(shared.values(), default=0)
+            best = [name for name, count in shared.items() if count == most]
+            if most == 0 or len(best) > 1:
+                return {}
+            found[actuator] = best[0]
+        return found
+
+    def neutral_value(self, name: str) -> float:
+        """Return the value of an input where nothing is sent or measured.
+
+        Args:
+            name: Name of a command or of a measured quantity.
+
+        Raises:
+            BadInput: The vessel has no such input.
+        """
+        if name in self.commands:
+            return self.commands[name].neutral
+        if name in self.measured:
+            return self.measured[name].neutral
+        raise BadInput(unknown_name_message(f"{self.name}: channel", name, self.inputs))
 
 
 def _with_cosine_and_sine(angles: tuple[str, ...]) -> list[str]:
@@ -388,9 +457,19 @@ def _check_roles(vessel: ChannelBindings, effect: Effect, what: str) -> None:
 
 
 def _check_channel(vessel: ChannelBindings, effect: ChannelEffect, what: str) -> None:
-    for name in (*effect.on, *effect.fed_by):
+    unit = type(effect).measured_unit
+    if unit and not effect.fed_by:
+        raise BadInput(
+            f"{what}: fed_by is missing: the measured quantity in {unit} of each channel in on; "
+            f"there are: {', '.join(vessel.measured) or 'none in [measured]'}"
+        )
+    sources: Collection[str] = vessel.measured if unit else vessel.commands
+    for name in effect.on:
         if name not in vessel.commands:
             raise BadInput(unknown_name_message(f"{what}: channel", name, vessel.commands))
+    for name in effect.fed_by:
+        if name not in sources:
+            raise BadInput(unknown_name_message(f"{what}: channel", name, sources))
     if effect.fed_by and len(effect.fed_by) != len(effect.on):
         raise BadInput(
             f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each "

@@ -130,11 +130,13 @@ MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
 RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
     "dragged_propeller",  # with the way
+    "drive_fade",  # at the begin of a run
     "push",  # before its time and after
     "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
+    "thrust_fade",  # at the begin of a run
 }
-SI = {"rad", "m", "kg", "s", "N"}
+SI = {"rad", "m", "kg", "s", "N", "V"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
 CURRENT = Path(__file__).parents[2] / "data" / "current.csv"
 COEFFICIENTS, MESH = OTTER / "hydrodynamics", OTTER / "hull.obj"

@@ -1,0 +1,39 @@
+"""Voltages of a log are proposed for a measured voltage of the vessel."""
+
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.recordings.importing.log import Log, Signal
+from boatsim.recordings.importing.voltages import voltage_lines, voltage_signals
+
+T = np.arange(30.0)
+
+
+def log_of(**signals: tuple[float, str]) -> Log:
+    found = {name: Signal(T, np.full(30, value), unit) for name, (value, unit) in signals.items()}
+    return Log(Path("run.csv"), found)
+
+
+LOG = log_of(
+    motor_voltage=(24.0, ""),
+    battery_voltage=(24100.0, "mV"),
+    heading=(90.0, "deg"),
+    spare_volt=(0.0, "V"),
+)
+
+
+def test_voltages_are_known_by_their_names_and_units_and_are_not_always_zero() -> None:
+    assert voltage_signals(LOG) == ["motor_voltage", "battery_voltage"]
+
+
+def test_the_best_name_is_proposed_in_volts_and_the_others_are_comments() -> None:
+    first, second = voltage_lines("battery_V", "supply", LOG).splitlines()
+    assert first == 'battery_V = "battery_voltage * 0.001"  # CHECK: supply'
+    assert second == '# or battery_V = "motor_voltage"  # CHECK: supply'
+
+
+def test_a_log_without_voltage_leaves_the_line_to_its_owner() -> None:
+    assert voltage_lines("battery_V", "supply", log_of()) == (
+        '# battery_V = "..."  # CHECK: supply\n'
+    )
