@@ -126,6 +126,7 @@ class ReversalPause(ChannelEffect):
     slots: ClassVar[int] = 2
     stage: ClassVar[int] = COMMANDS
     acts_astern: ClassVar[bool] = True
+    has_derivative: ClassVar[bool] = False
     transform_signal: ClassVar = transform_signal
     present_output: ClassVar = present_output
     time_to_discontinuity: ClassVar = time_to_discontinuity
