@@ -26,8 +26,9 @@ POSITION = ("x", "y")
 class IntervalMap:
     """Motion of a vessel over one interval with held commands.
 
-    Delays and play of the commands, and pauses between ahead and astern, are left out. Rate limits act on large motions only and are
-    lifted: without a lag even a small change of a command would meet them.
+    Delays and play of the commands, and pauses between ahead and astern, are left out. Rate limits
+    act on large motions only and are lifted: without a lag even a small change of a command would
+    meet them.
 
     Attributes:
         vessel: The vessel without the effects that are left out.
