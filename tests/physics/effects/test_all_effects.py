@@ -133,6 +133,7 @@ RESTS = {  # effects that are not always there
     "push",  # before its time and after
     "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
+    "ventilation",  # deep below the surface
 }
 SI = {"rad", "m", "kg", "s", "N"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
