@@ -54,7 +54,7 @@ def law(m: Any, q: Any, s: Any, t: Any, p: Array, first: Any) -> Wrench:
     upright = sin(m.phi) * t.y + cos(m.phi) * below
     immersion = m.z - sin(m.theta) * t.x + cos(m.theta) * upright
     immersion += elevation_at_hull(t.x, t.y, m, q, p, first)
-    lost = q.strength * (1.0 - thrust_diminution(immersion / q.radius))
+    lost = q.loss * (1.0 - thrust_diminution(immersion / q.radius))
     return thrust_wrench_at_mount(-lost * t.gain * s.thrust, s, t)
 
 
@@ -62,12 +62,12 @@ def law(m: Any, q: Any, s: Any, t: Any, p: Array, first: Any) -> Wrench:
 class Ventilation(SeaParameters, Force):
     """Loss of thrust of a propeller that heave, pitch, roll or a wave bring near the surface.
 
-    dT = -strength (1 - beta) T,  beta = 1 - 0.675 (1 - 0.769 h / R)^1.258  for h < 1.3 R, else 1
+    dT = -loss (1 - beta) T,  beta = 1 - 0.675 (1 - 0.769 h / R)^1.258  for h < 1.3 R, else 1
 
     beta is at least 0. The immersion h of the shaft at the mount (x, y) is z + z_s in upright
     attitude, with the heave z and the depth z_s of the shaft at rest, plus the elevation of the
     sea there. The factor contains the lost area of the disc and the loss of lift near the surface;
-    a heavily loaded propeller draws air and loses more, `strength` > 1. The radius R of the
+    a heavily loaded propeller draws air and loses more, `loss` > 1. The radius R of the
     propeller is rarely known: by default it is the largest that has full thrust at rest.
 
     The sea is that of `irregular_sea`: `spectrum`, `significant_height`, `modal_period`, `toward`
@@ -81,11 +81,11 @@ class Ventilation(SeaParameters, Force):
         r"\frac{h}{R}\right)^{1.258}, 0\right) & h < 1.3 \, R \end{cases} \\ h &= z - x \sin\theta "
         r"+ \left(y \sin\phi + z_s \cos\phi\right) \cos\theta + \eta(x, y, t) \end{aligned}"
     )
-    symbols: ClassVar = {"strength": "s", "radius": "R", "shaft_depth": "z_s"}
+    symbols: ClassVar = {"loss": "s", "radius": "R", "shaft_depth": "z_s"}
     needs_one_of: ClassVar = ("heave", "pitch")
     ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = "the propellers lose thrust when they come near the surface"
-    shown_by: ClassVar[str] = "constant thrust in head waves that pitch the boat"
+    shown_by: ClassVar[str] = "constant thrust while the boat pitches and heaves on still water"
     source: ClassVar[str] = (
         "K. Minsaas, O. M. Faltinsen, B. Persson, On the importance of added resistance, propeller "
         "immersion and propeller ventilation for large ships in a seaway, PRADS 1983; fit of beta "
@@ -95,7 +95,7 @@ class Ventilation(SeaParameters, Force):
     sees_table: ClassVar[bool] = True
     law: ClassVar = law
 
-    strength: float = param(
+    loss: float = param(
         0.0,
         low=0.0,
         high=5.0,

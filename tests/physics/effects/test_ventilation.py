@@ -66,7 +66,7 @@ def lost_thrust(effect: Ventilation, place: tuple[float, float, float], **motion
     ],
 )
 def test_the_immersion_is_the_depth_of_the_mount_in_any_attitude(motion: dict[str, float]) -> None:
-    place, effect = (-0.9, 0.3, 0.12), Ventilation(strength=0.8, radius=0.15, shaft_depth=0.0)
+    place, effect = (-0.9, 0.3, 0.12), Ventilation(loss=0.8, radius=0.15, shaft_depth=0.0)
     angles = [motion.get(name, 0.0) for name in ("psi", "theta", "phi")]
     depth = motion.get("z", 0.0) + Rotation.from_euler("ZYX", angles).apply(place)[2]
     expected = 0.8 * (1.0 - float(published(depth / 0.15))) * 10.0
@@ -74,7 +74,7 @@ def test_the_immersion_is_the_depth_of_the_mount_in_any_attitude(motion: dict[st
 
 
 def test_a_stern_that_rises_loses_thrust_and_one_that_sinks_does_not() -> None:
-    effect, place = Ventilation(strength=1.0, radius=0.1, shaft_depth=0.0), (-0.9, 0.0, 0.14)
+    effect, place = Ventilation(loss=1.0, radius=0.1, shaft_depth=0.0), (-0.9, 0.0, 0.14)
     assert lost_thrust(effect, place) == 0.0
     assert lost_thrust(effect, place, theta=-0.1) > 2.0  # bow down
     assert lost_thrust(effect, place, theta=0.1) == 0.0
@@ -84,7 +84,7 @@ def test_a_stern_that_rises_loses_thrust_and_one_that_sinks_does_not() -> None:
 def test_a_wave_counts_with_its_elevation_at_the_propeller(spreading: float) -> None:
     sea = {"significant_height": 0.3, "modal_period": 3.0, "toward": 0.7, "components": 20.0}
     sea |= {"spreading": spreading, "realisation": 5.0}
-    effect = Ventilation(strength=1.0, radius=0.2, shaft_depth=0.15, **sea)
+    effect = Ventilation(loss=1.0, radius=0.2, shaft_depth=0.15, **sea)
     field = IrregularSea(**sea).wave_field()
     assert field is not None and effect.wave_field() is None
     x, y = -0.9, 0.3
@@ -102,7 +102,7 @@ def test_a_vessel_without_depths_of_its_mounts_has_its_shafts_at_its_draught() -
     effect = Ventilation().with_all_parameters(otter)
     assert effect.shaft_depth == pytest.approx(otter.draught)
     assert effect.radius == pytest.approx(0.769 * otter.draught)
-    at_rest = Ventilation(strength=1.0).with_all_parameters(otter)
+    at_rest = Ventilation(loss=1.0).with_all_parameters(otter)
     own = Propeller.as_thruster(Propeller.signals(shaft=80.0), Propeller().values())
     assert at_rest.wrench(make_motion(), own, Thruster().values()).X == pytest.approx(0.0, abs=1e-9)
 
@@ -208,12 +208,12 @@ RIVALS = (
 )
 
 
-def ranking_of(name: str, strength: float, folder: Path) -> Any:
+def ranking_of(name: str, loss: float, folder: Path) -> Any:
     """What two recordings say of a vessel with or without loss of thrust near the surface."""
     boat = pitching_craft() if name == "platform" else pulled_otter(folder)
     truth = boat
-    if strength > 0.0:
-        truth = boat.with_effect({"use": "ventilation", "strength": strength})
+    if loss > 0.0:
+        truth = boat.with_effect({"use": "ventilation", "loss": loss})
     recordings = []
     for seed in (1, 2):
         rng = np.random.default_rng(seed)
@@ -236,7 +236,7 @@ def ranking_of(name: str, strength: float, folder: Path) -> Any:
 def test_a_loss_near_the_surface_is_found_with_its_size(name: str, tmp_path: Path) -> None:
     ranking = ranking_of(name, 1.0, tmp_path)
     assert [one.name for one in ranking.named] == ["ventilation"]
-    value, sd = ranking.best.value("ventilation", "strength")
+    value, sd = ranking.best.value("ventilation", "loss")
     assert abs(value - 1.0) < max(4.0 * sd, 0.1)
     assert sd < 0.2
 
