@@ -32,6 +32,24 @@ def random_orders(
     return np.repeat(rng.uniform(-limits, limits, (holds, len(limits))), rows, axis=0)
 
 
+def paused(orders: Array, pause: float) -> Array:
+    """Orders (T, C) of drives that stand still where an order of the other sign is less old."""
+    out = orders.copy()
+    window = round(pause / STEP)
+    for row in range(len(orders)):
+        recent = orders[max(row - window, 0) : row]
+        out[row, (recent * orders[row] < 0.0).any(axis=0)] = 0.0
+    return out
+
+
+def played(orders: Array, width: float) -> Array:
+    """Orders (T, C) behind a play, from its middle: the last extreme decides."""
+    out = orders.copy()
+    for row in range(1, len(orders)):
+        out[row] = np.clip(out[row - 1], orders[row] - 0.5 * width, orders[row] + 0.5 * width)
+    return out
+
+
 def driven(
     boat: Vessel,
     orders: Mapping[str, Array],

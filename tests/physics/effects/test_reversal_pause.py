@@ -4,7 +4,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from driven_boats import STEP, driven, platform_of_three_drives, random_orders, ranked
+from driven_boats import (
+    STEP,
+    driven,
+    paused,
+    platform_of_three_drives,
+    random_orders,
+    ranked,
+)
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
@@ -109,16 +116,6 @@ def test_it_is_tested_only_where_a_drive_can_push_astern() -> None:
 
 
 # ---- recordings
-
-
-def paused(orders: Array, pause: float) -> Array:
-    """Orders (T, C) of drives that stand still where an order of the other sign is less old."""
-    out = orders.copy()
-    window = round(pause / STEP)
-    for row in range(len(orders)):
-        recent = orders[max(row - window, 0) : row]
-        out[row, (recent * orders[row] < 0.0).any(axis=0)] = 0.0
-    return out
 
 
 CRAFT = {  # vessel -> channels of the drives, and the largest order in their unit

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from driven_boats import driven, platform_of_three_drives, random_orders, ranked
+from driven_boats import driven, platform_of_three_drives, played, random_orders, ranked
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
@@ -74,17 +74,6 @@ def test_it_is_a_candidate_for_thrusts_for_shafts_and_for_single_drives() -> Non
 
 
 # ---- recordings
-
-
-def played(orders: Array, width: float) -> Array:
-    """Orders (T, C) behind a play, from its middle: the last extreme decides."""
-    out = orders.copy()
-    for row in range(1, len(orders)):
-        high, low = orders[row] + 0.5 * width, orders[row] - 0.5 * width
-        out[row] = np.where(
-            out[row - 1] > high, high, np.where(out[row - 1] < low, low, out[row - 1])
-        )
-    return out
 
 
 CRAFT = {  # vessel -> candidate, channels of the drives, largest order and play in their unit
