@@ -87,6 +87,8 @@ def test_a_wave_counts_with_its_elevation_at_the_propeller(spreading: float) -> 
     effect = Ventilation(loss=1.0, radius=0.2, shaft_depth=0.15, **sea)
     field = IrregularSea(**sea).wave_field()
     assert field is not None and effect.wave_field() is None
+    seeded = effect.with_seed(7), IrregularSea(**sea).with_seed(7)
+    assert seeded[0].realisation == seeded[1].realisation != effect.realisation
     x, y = -0.9, 0.3
     for t, north, east, psi in ((0.0, 0.0, 0.0, 0.0), (7.3, 2.0, -5.0, 1.1)):
         propeller_north = north + x * np.cos(psi) - y * np.sin(psi)
