@@ -108,6 +108,8 @@ def _effect_facts(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         yield "acts on each", cls.per_instance_of
     if cls.needs:
         yield "needs", f"degrees of freedom {' and '.join(cls.needs)}"
+    if cls.needs_one_of:
+        yield "needs", f"a degree of freedom in {' or '.join(cls.needs_one_of)}"
     if cls.ruled_out_by:
         excluding: list[str] = []
         for fact, values in cls.ruled_out_by.items():

@@ -321,6 +321,8 @@ def missing_requirements(
     missing = [name for name in kind.needs if name not in vessel.dof]
     if missing:
         return f"no degree of freedom in {' and '.join(missing)}"
+    if kind.needs_one_of and not set(kind.needs_one_of) & set(vessel.dof):
+        return f"no degree of freedom in {' or '.join(kind.needs_one_of)}"
     axes = set()
     for param in kind.params().values():
         if param.fit:

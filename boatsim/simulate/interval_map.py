@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
+from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.filtered import FilteredSignal
 from boatsim.physics.kinds.motion_memory import MotionMemory
 from boatsim.physics.signals import AXES, Array
@@ -19,15 +20,15 @@ from boatsim.simulate.stepper import State
 
 SUBSTEPS = 8  # integration steps per interval, 10 ms for the joystick controllers
 DELAY = "command_delay"  # effect that enters a linear model as a delay of its inputs
-PLAY = "steering_backlash"  # effect that has no derivative; a linear model leaves it out
 POSITION = ("x", "y")
 
 
 class IntervalMap:
     """Motion of a vessel over one interval with held commands.
 
-    Delays and play of the commands are left out. Rate limits act on large motions only and are
-    lifted: without a lag even a small change of a command would meet them.
+    Delays and play of the commands, and pauses between ahead and astern, are left out. Rate limits
+    act on large motions only and are lifted: without a lag even a small change of a command would
+    meet them.
 
     Attributes:
         vessel: The vessel without the effects that are left out.
@@ -37,7 +38,7 @@ class IntervalMap:
             actuator. "" for an unused entry.
         memory_actuators: Actuator of each of these entries, "" for none.
         delay: Dead time of the commands that is left out [s].
-        ignored: Names of the effects with play that are left out.
+        ignored: Names of the effects without a derivative, such as play, that are left out.
         delayed: Actuators with the dead time, if it does not act on all.
     """
 
@@ -59,9 +60,9 @@ class IntervalMap:
                 delayed = vessel.target_actuators(effect)
                 if set(delayed) != set(vessel.actuators):
                     self.delayed += delayed
-            if kind == PLAY:
+            if not has_derivative(effect):
                 self.ignored.append(effect.name)
-            if kind in (DELAY, PLAY):
+            if kind == DELAY or not has_derivative(effect):
                 vessel = vessel.without_effect(effect.name)
         self.vessel = _without_rate_limits(vessel)
         self._engine = OpenWater(self.vessel, length / SUBSTEPS)
@@ -156,6 +157,15 @@ class IntervalMap:
             if not names[i]:
                 names[i] = f"memory.{i + 1}"
         return names, actuators
+
+
+def has_derivative(effect: Effect) -> bool:
+    """Return whether a linear model of a vessel can contain an effect.
+
+    Args:
+        effect: Effect of the vessel.
+    """
+    return not isinstance(effect, ChannelEffect) or type(effect).has_derivative
 
 
 def _without_rate_limits(vessel: Vessel) -> Vessel:

@@ -257,7 +257,7 @@ def _continuous_model(
     m, n = len(inputs), len(states)
     remarks = []
     if motion.ignored:
-        remarks.append(f"without the play of {', '.join(motion.ignored)}")
+        remarks.append(f"without a derivative and therefore left out: {', '.join(motion.ignored)}")
     if motion.delayed:
         remarks.append(f"the dead time acts on {', '.join(motion.delayed)} only")
     named = variable_names((*states, *inputs))

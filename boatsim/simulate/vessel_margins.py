@@ -22,7 +22,7 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import load_class, shipped_content_names, snake_case
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.interval_map import PLAY, SUBSTEPS
+from boatsim.simulate.interval_map import SUBSTEPS, has_derivative
 from boatsim.simulate.linearisation import LinearVessel, linearise_vessel
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.stepper import State
@@ -104,7 +104,7 @@ def _margin_at(controller: Any, vessel: Vessel, number: int) -> VesselMargin:
     crossover, phase, delay = delay_margin(linear, loops, commands)
     ignored = []
     for effect in vessel.effects:
-        if type(effect).type_name() == PLAY:
+        if not has_derivative(effect):
             ignored.append(effect.name)
     simulated = simulated_delay_margin(controller, vessel, point)
     return VesselMargin(point.name, crossover, degrees(phase), delay, simulated, tuple(ignored))

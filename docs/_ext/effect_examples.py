@@ -93,6 +93,14 @@ def _table(table: Mapping[str, object]) -> str:
     return "\n".join([*lines, "}"])
 
 
+def _goal_text(goal: Mapping[str, object] | list[Mapping[str, object]]) -> str:
+    """Return the line with one goal, or the lines with several goals in time."""
+    if isinstance(goal, Mapping):
+        return f"goal = [{_table(goal)}]"
+    rows = [f"    {json.dumps(one)}," for one in goal]
+    return "\n".join(["goal = [", *rows, "]"])
+
+
 def _labels(case: Case) -> tuple[str, str]:
     """Return the words for the vessel before and after the change."""
     if "add" in case:
@@ -113,7 +121,7 @@ def _running_program(name: str, case: Case) -> str:
         schema = "from boatsim.physics.vessel.schema import MeasuredChannel"
         lines = ["import dataclasses", "", "import boatsim", schema, *lines[1:]]
     if goal:
-        lines.append(f"goal = [{_table(goal)}]")
+        lines.append(_goal_text(goal))
         keys += ", goal=goal"
     before, after = _labels(case)
     lines += [

@@ -355,17 +355,18 @@ def test_position_is_a_state_on_request() -> None:
         boatsim.linearise("joystick_boat", commands=turning, position=True)
 
 
-def test_delay_and_play_are_named_and_left_out() -> None:
+def test_delay_play_and_pause_are_named_and_left_out() -> None:
     vessel = load_vessel("joystick_boat")
     plain = boatsim.linearise(vessel, speed=0.5)
     late = vessel.with_effect({"use": "command_delay", "delay": 0.2})
     late = late.with_effect({"use": "steering_backlash"})
+    late = late.with_effect({"use": "reversal_pause", "pause": 0.5})
     model = boatsim.linearise(late, speed=0.5)
     assert model.delay == pytest.approx(0.2)
     one = vessel.with_effect({"use": "command_delay", "delay": 0.2, "on": ["thrust_port_N"]})
     remarks = boatsim.linearise(one, speed=0.5).remarks
     assert remarks == ("the dead time acts on thrust_port_N only",)
-    assert "steering_backlash" in model.remarks[0]
+    assert "steering_backlash" in model.remarks[0] and "reversal_pause" in model.remarks[0]
     assert model.a == pytest.approx(plain.a, abs=1e-9)
 
 

@@ -78,6 +78,7 @@ class SteeringBacklash(ChannelEffect):
     slots: ClassVar[int] = 1
     stage: ClassVar[int] = COMMANDS
     either_side: ClassVar[bool] = True
+    has_derivative: ClassVar[bool] = False
     transform_signal: ClassVar = transform_signal
     thresholds: ClassVar = {"width": (0.07, 0.3)}
     strength: ClassVar = ("width",)

@@ -134,6 +134,9 @@ class ChannelEffect(EffectKind):
     either_side: ClassVar[bool] = False
     # whether it changes nothing of a drive that pushes in one direction only
     acts_astern: ClassVar[bool] = False
+    # whether a small change of the command changes the signal smoothly; a linear model leaves out
+    # an effect such as play, which acts on changes of direction
+    has_derivative: ClassVar[bool] = True
     # whether it differs from another effect only if the limits ahead and astern are not the same
     limits_differ: ClassVar[bool] = False
     # unit of the measured quantities that feed it, as in the names of their columns ("V"); "":

@@ -87,6 +87,8 @@ class Effect(CheckedParameters):
     stage: ClassVar[int] = 0
     # dof without which it has no effect, in addition to those of its parameters
     needs: ClassVar[tuple[str, ...]] = ()
+    # dof of which it needs at least one, in addition to `needs`
+    needs_one_of: ClassVar[tuple[str, ...]] = ()
     # fact -> values that exclude the effect
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
     # fact -> value that must be specified, or the effect is no candidate
@@ -429,6 +431,9 @@ class Boat(Protocol):
 
     def names_of(self, name: str) -> list[str]:
         """Return the names of all effects of the vessel that have a given name or type."""
+
+    def effects_of_type(self, idea: str) -> list[Effect]:
+        """Return the vessel's effects of a type, and those that can stand for that type."""
 
     def limits(self) -> Mapping[str, tuple[float, float]]:
         """Return the allowed range (low, high) of each input of the vessel, by name."""

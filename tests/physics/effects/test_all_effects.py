@@ -135,6 +135,7 @@ RESTS = {  # effects that are not always there
     "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs
     "thrust_fade",  # at the begin of a run
+    "ventilation",  # deep below the surface
 }
 SI = {"rad", "m", "kg", "s", "N", "V"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"

@@ -1,0 +1,116 @@
+"""Recordings of shipped vessels whose drives do something else with their orders.
+
+A shipped vessel is sailed with the thrust that a function of this file's callers makes of the
+orders, so that the recordings share no law of an actuator with the effect that is to be found."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from boatsim.diagnosis.candidates import candidate_library
+from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.open_water import OpenWater
+
+STEP = 0.02  # [s] of the simulation and of what the drives do
+PER_ROW = 10  # steps a row: 5 Hz
+NOISE = {"x_m": 0.005, "y_m": 0.005, "psi_rad": 0.005}  # [m], [m], [rad] of a recorded pose
+
+Drive = Callable[[Array], Array]  # orders (T, C), one each step -> what the drives give (T, C)
+
+
+def random_orders(
+    rng: np.random.Generator, largest: Sequence[float], holds: int, rows: int
+) -> Array:
+    """Random orders (holds * rows, C) up to the largest ones, each held for some rows."""
+    limits = np.array(largest)
+    return np.repeat(rng.uniform(-limits, limits, (holds, len(limits))), rows, axis=0)
+
+
+def paused(orders: Array, pause: float) -> Array:
+    """Orders (T, C) of drives that stand still where an order of the other sign is less old."""
+    out = orders.copy()
+    window = round(pause / STEP)
+    for row in range(len(orders)):
+        recent = orders[max(row - window, 0) : row]
+        out[row, (recent * orders[row] < 0.0).any(axis=0)] = 0.0
+    return out
+
+
+def played(orders: Array, width: float) -> Array:
+    """Orders (T, C) behind a play, from its middle: the last extreme decides."""
+    out = orders.copy()
+    for row in range(1, len(orders)):
+        out[row] = np.clip(out[row - 1], orders[row] - 0.5 * width, orders[row] + 0.5 * width)
+    return out
+
+
+def driven(
+    boat: Vessel,
+    orders: Mapping[str, Array],
+    drive: Drive,
+    seed: int,
+    noise: Mapping[str, float] = NOISE,
+) -> Recording:
+    """A recording of a vessel under orders, one for each row, of which its drives make their own.
+
+    Args:
+        boat: Vessel.
+        orders: Channel -> orders (N,) in the unit of the channel.
+        drive: What the drives give for the orders of all channels, in their order.
+        seed: Of the noise.
+        noise: Recorded column -> sd of its noise, in SI units.
+    """
+    rng = np.random.default_rng(seed)
+    channels = list(orders)
+    given = np.column_stack([orders[name] for name in channels])
+    done = drive(np.repeat(given, PER_ROW, axis=0))
+    engine = OpenWater(boat, STEP)
+    engine.reset(commands=dict(zip(channels, done[0].tolist(), strict=True)))
+    rows: list[list[float]] = []
+    for step, sent in enumerate(done):
+        if step % PER_ROW == 0:
+            rows.append([getattr(engine.state, name.rpartition("_")[0]) for name in noise])
+        engine.command(dict(zip(channels, sent.tolist(), strict=True)))
+        engine.advance()
+    seen = np.array(rows) + rng.standard_normal((len(rows), len(noise))) * list(noise.values())
+    signals = dict(zip(noise, seen.T, strict=True)) | dict(orders)
+    return Recording(f"run_{seed}", np.arange(len(rows)) * STEP * PER_ROW, signals, Notes())
+
+
+def ranked(
+    boat: Vessel, tested: Sequence[str], *recordings: Recording, requested: Sequence[str] = ()
+) -> Ranking:
+    """What the recordings say of some candidates of a vessel, usual ones and requested ones."""
+    effects = [e for e in candidate_library(boat, requested).entries if e.name in tested]
+    program = Program(boat, effects)
+    mapped = [map_recording(recording, program) for recording in recordings]
+    problem = Problem(mapped, prior_noise_levels(boat, recordings), {"thrust": 0.05})
+    return select_and_rank_candidates(problem, tuple(e.name for e in effects))
+
+
+def platform_of_three_drives() -> Vessel:
+    """A platform with a fixed drive athwart its bow and two at its stern, all ahead and astern."""
+    places = {"bow": (0.6, 0.0, 1.5708), "port": (-0.6, -0.3, 0.0), "starboard": (-0.6, 0.3, 0.0)}
+    effects: list[dict[str, object]] = [
+        {"use": "linear_damping", "surge": 6.0, "sway": 15.0, "yaw": 6.0}
+    ]
+    for drive, (x, y, angle) in places.items():
+        on = {"thrust": f"{drive}_N", "angle": angle}
+        effects.append({"use": "thruster", "name": drive, "on": on, "x": x, "y": y})
+    return Vessel.from_effects(
+        name="platform",
+        dof=("surge", "sway", "yaw"),
+        length=1.5,
+        beam=0.9,
+        draught=0.1,
+        body={"mass": 30.0, "roll_inertia": 2.0, "yaw_inertia": 4.0},
+        effects=effects,
+        channels={f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places},
+        diagnosis={"facts": {"still_water": True, "indoors": True}},
+    )
