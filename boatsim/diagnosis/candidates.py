@@ -319,6 +319,8 @@ def missing_requirements(
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    if reason := found.missing_for_test(vessel):
+        return reason
     if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):
         return "no command is negative"
     if isinstance(found, ChannelEffect) and found.limits_differ and _is_symmetric(vessel, found):
