@@ -36,6 +36,7 @@ TESTED = (
     "slope",
     "payload",
     "quadratic_damping",
+    "shared_supply",
     *(f"drive_gain_error_{fan}" for fan in FANS),
 )
 
@@ -70,11 +71,13 @@ def floated(
     delays: Array | None = None,
     rates: Array | None = None,
     powers: Array | None = None,
+    supply: float = 0.0,
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
     `lags` are time constants of the fans [s], `delays` their dead times in rows, `rates` the
-    largest rates of their thrust [N/s], and `powers` the exponents of their curves.
+    largest rates of their thrust [N/s], `powers` the exponents of their curves, and `supply` the
+    share that a fan loses while all others give full thrust.
     """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, 0.25, (ROWS // 10, len(FANS))), 10, axis=0)
@@ -95,6 +98,8 @@ def floated(
 
     def derivatives(s: Array, time: float, order: Array, begin: Array) -> list[float]:
         thrust = thrust_after(time, order, begin)
+        others = thrust.sum() - thrust
+        thrust = thrust * (1.0 - supply * others / (FULL * (len(FANS) - 1)))
         X, Y = thrust @ np.cos(angle), thrust @ np.sin(angle)
         N = thrust @ (x * np.sin(angle) - y * np.cos(angle))
         c, k = np.cos(s[2]), np.sin(s[2])
@@ -166,6 +171,7 @@ CASES: dict[str, tuple[dict[str, object], str, dict[str, float]]] = {
         {"factor": 0.5},
     ),
     "slope": ({"slope": (0.01, -0.005)}, "slope", {"north": 0.01, "east": -0.005}),
+    "battery": ({"supply": 0.4}, "shared_supply", {"loss": 0.4}),
 }
 
 
