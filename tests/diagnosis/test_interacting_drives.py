@@ -96,6 +96,22 @@ LOSSES: dict[str, tuple[Callable[[Array, Array, float], Array], str, float]] = {
 }
 
 
+def weak_drive(thrust: Array, angle: Array, factor: float) -> Array:
+    """Thrust of drives of which the second is weaker than specified."""
+    return thrust * np.where(np.arange(len(thrust)) == 1, factor, 1.0)
+
+
+def bent_curve(thrust: Array, angle: Array, exponent: float) -> Array:
+    """Thrust that grows with a power of its command."""
+    return FULL * (thrust / FULL) ** exponent
+
+
+LOOK_ALIKES: dict[str, tuple[Callable[[Array, Array, float], Array], str, float]] = {
+    "drive_gain_error_port": (weak_drive, "factor", 0.7),
+    "thrust_exponent": (bent_curve, "exponent", 1.3),
+}
+
+
 def sailed(seed: int, effect: str = "") -> Recording:
     """A recording of random orders to all drives; a drive is often turned on another one."""
     rng = np.random.default_rng(seed)
@@ -103,7 +119,8 @@ def sailed(seed: int, effect: str = "") -> Recording:
     thrusts = rng.uniform(1.0, FULL, (steps, 3))
     directions = rng.uniform(-np.pi, np.pi, (steps, 3))
     directions[::2, 1] = -0.5 * np.pi  # the race of the port drive strikes the starboard one
-    law, _, size = LOSSES.get(effect, (lambda thrust, angle, size: thrust, "", 0.0))
+    changes = LOSSES | LOOK_ALIKES
+    law, _, size = changes.get(effect, (lambda thrust, angle, size: thrust, "", 0.0))
     x, y = np.array(list(PLACES.values())).T
     s, poses = np.zeros(6), []
 
@@ -211,3 +228,13 @@ def test_a_loss_is_found_with_its_size(name: str, effect: str) -> None:
 @pytest.mark.slow
 def test_no_loss_is_found_where_there_is_none(name: str) -> None:
     assert ranked(name, "").named == ()
+
+
+@pytest.mark.parametrize("effect", LOOK_ALIKES)
+@pytest.mark.slow
+def test_another_error_of_the_thrust_is_not_taken_for_such_a_loss(effect: str) -> None:
+    _, parameter, true = LOOK_ALIKES[effect]
+    ranking = ranked("platform", effect)
+    assert [one.name for one in ranking.named] == [effect]
+    value, sd = ranking.best.value(effect, parameter)
+    assert abs(value - true) < 4.0 * sd
