@@ -225,8 +225,8 @@ class Effect(CheckedParameters):
     def missing_for_test(self, vessel: "Boat") -> str:
         """Return why recordings of a vessel could not show the effect, in words; "" if they could.
 
-        A diagnosis does not test the effect then, although a vessel file may contain it. An example
-        is the interaction of drives whose races never meet. Empty unless a subclass has a reason.
+        A diagnosis does not test the effect then, unless it is requested. An example is the
+        interaction of drives whose races never meet. Empty unless a subclass has a reason.
 
         Args:
             vessel: Vessel on which the effect acts.

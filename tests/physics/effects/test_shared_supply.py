@@ -56,5 +56,7 @@ def test_it_is_tested_from_three_drives_on_and_refuses_drives_that_do_not_exist(
     assert "shared_supply" in candidate_library(load_vessel("osv")).tested_names
     reason = candidate_library(load_vessel("trial_boat")).inapplicable["shared_supply"]
     assert reason == "fewer than 3 drives that could share a supply"
+    asked = candidate_library(load_vessel("trial_boat"), ("shared_supply",))
+    assert "shared_supply" in asked.tested_names
     with pytest.raises(BadInput, match="'prt' does not exist; did you mean 'port'"):
         load_vessel("osv").with_effect({"use": "shared_supply", "on": ["prt"]})
