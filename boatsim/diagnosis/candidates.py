@@ -121,7 +121,7 @@ def candidate_library(
                     "fit (fit=True)"
                 )
             continue
-        missing = missing_requirements(kind, vessel, known, source.table, fewest)
+        missing = missing_requirements(kind, vessel, known, source.table, fewest, source.requested)
         missing = missing or _missing_columns(kind, columns)
         if missing:
             inapplicable[name] = missing
@@ -306,6 +306,7 @@ def missing_requirements(
     facts: Mapping[str, object],
     table: Mapping[str, object],
     fewest: int = DEFAULT.select.fewest_instances,
+    requested: bool = False,
 ) -> str:
     """Return what a vessel lacks for an effect to act on it, in words; "" if nothing is missing.
 
@@ -317,6 +318,8 @@ def missing_requirements(
         facts: Facts of the vessel and of the recordings.
         table: Settings of the effect.
         fewest: Instances from which on an error of a single one can be tested.
+        requested: Whether the vessel or the user asks for the effect. It is then tested although
+            recordings might not show it (`Effect.missing_for_test`).
     """
     missing = [name for name in kind.needs if name not in vessel.dof]
     if missing:
@@ -351,6 +354,8 @@ def missing_requirements(
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    if not requested and (reason := found.missing_for_test(vessel)):
+        return reason
     if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):
         return "no command is negative"
     if isinstance(found, ChannelEffect) and found.limits_differ and _is_symmetric(vessel, found):

@@ -23,6 +23,7 @@ from boatsim.physics.debugging import is_compiled
 from boatsim.physics.kinds.channel import WHOLE, ChannelEffect
 from boatsim.physics.kinds.effect import Effect, EffectKind, LawCall, ProgramFunction
 from boatsim.physics.kinds.filtered import FilteredSignal
+from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.motion_memory import MotionMemory
 from boatsim.physics.kinds.recall import SignalHistory
 from boatsim.physics.vessel import Vessel
@@ -113,12 +114,36 @@ class Composition:
         if not type(effect).per_instance_of:
             signals = (self._signals_text(number),) if type(effect).roles else ()
             return [LawCall(number, own, signals + held)]
-        calls = []
+        carriers = []
         for carrier in self.vessel.host_effects(effect):
             i = self.effects.index(carrier)
             carried = self._carrier_signals(i, type(effect).per_instance_of)
-            calls.append(LawCall(number, own, (carried, self._parameters_text(i), *held)))
+            carriers.append((carried, self._parameters_text(i)))
+        calls = []
+        for k, carrier_text in enumerate(carriers):
+            others = carriers[:k] + carriers[k + 1 :]
+            total = self._influence_text(number, own, carrier_text, others)
+            calls.append(LawCall(number, own, (*carrier_text, *held, *total)))
         return calls
+
+    def _influence_text(
+        self,
+        number: int,
+        own: str,
+        carrier: tuple[str, str],
+        others: Sequence[tuple[str, str]],
+    ) -> tuple[str, ...]:
+        """`influence3(...) + influence3(...)`: the sum of the influences of other instances.
+
+        Empty for an effect whose instances do not act on each other.
+        """
+        effect = self.effects[number]
+        if not isinstance(effect, Force) or type(effect).influence is None:
+            return ()
+        terms = []
+        for other in others:
+            terms.append(f"influence{number}({', '.join((own, *carrier, *other))})")
+        return (" + ".join(terms) or "0.0",)
 
     def target_actuators(self, number: int) -> Sequence[str]:
         """Return the names of the actuators whose signals a given channel effect changes.

@@ -186,7 +186,7 @@ def _evaluate(
     spec = case["plot"]
     kind: Any = type(effect)
     moves, signals = dict(spec.get("at", {})), dict(spec.get("signals", {}))
-    carrier = _carrier(effect, vessel)
+    carrier = _carrier(effect, vessel, spec)
     if carrier.roles and over in type(carrier).signals_type()._fields:
         signals[over] = value
     else:
@@ -207,14 +207,23 @@ def _evaluate(
         arguments += [np.zeros(100), 0, 0]
     if kind.sees_table:
         arguments += [np.array([*effect.table(), 0.0]), 0]
+    if getattr(kind, "influence", None) is not None:
+        other = vessel.effect(spec["on"][1])
+        assert other is not None
+        second = [type(other).signals(**spec["other"]), other.values()]
+        arguments.append(python_function(kind.influence)(*arguments[1:4], *second))
     return tuple(python_function(kind.law)(*arguments))
 
 
-def _carrier(effect: Effect, vessel: Vessel) -> Effect:
+def _carrier(effect: Effect, vessel: Vessel, spec: Mapping[str, Any]) -> Effect:
     """Return the effect whose signals a law takes: that on which it acts, or the effect itself."""
     kind = type(effect)
     if not kind.per_instance_of:
         return effect
+    if "on" in spec:
+        host = vessel.effect(spec["on"][0])
+        assert host is not None
+        return host
     return vessel.effects_of_type(kind.per_instance_of)[0]
 
 

@@ -37,6 +37,7 @@ TESTED = (
     "slope",
     "payload",
     "quadratic_damping",
+    "shared_supply",
     *(f"drive_gain_error_{fan}" for fan in FANS),
 )
 
@@ -79,6 +80,7 @@ def floated(
     fades: Array | None = None,
     power: float = 0.0,
     charge: tuple[float, float] = (1.0, 1.0),
+    supply: float = 0.0,
 ) -> Recording:
     """A recording of the craft with other numbers than those of its data sheet.
 
@@ -86,7 +88,8 @@ def floated(
     largest rates of their thrust [N/s], `powers` the exponents of their curves, and `limits` the
     largest thrusts [N]. The commands are up to `strongest` [N]. `fades` are the shares of the thrust
     that the fans lose in a second. The thrust is a `power` of the voltage of the battery, whose
-    share of the nominal one at begin and end is `charge`.
+    share of the nominal one at begin and end is `charge`. `supply` is the share that a fan loses
+    while all others give full thrust.
     """
     rng = np.random.default_rng(seed)
     commands = np.repeat(rng.uniform(0.0, strongest, (ROWS // 10, len(FANS))), 10, axis=0)
@@ -113,6 +116,8 @@ def floated(
 
     def derivatives(s: Array, time: float, order: Array, begin: Array) -> list[float]:
         thrust = thrust_after(time, order, begin)
+        others = thrust.sum() - thrust
+        thrust = thrust * (1.0 - supply * others / (FULL * (len(FANS) - 1)))
         X, Y = thrust @ np.cos(angle), thrust @ np.sin(angle)
         N = thrust @ (x * np.sin(angle) - y * np.cos(angle))
         c, k = np.cos(s[2]), np.sin(s[2])
@@ -188,6 +193,7 @@ CASES: dict[str, tuple[dict[str, object], str, dict[str, float]]] = {
         {"factor": 0.5},
     ),
     "slope": ({"slope": (0.01, -0.005)}, "slope", {"north": 0.01, "east": -0.005}),
+    "battery": ({"supply": 0.4}, "shared_supply", {"loss": 0.4}),
 }
 
 

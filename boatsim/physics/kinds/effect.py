@@ -224,6 +224,17 @@ class Effect(CheckedParameters):
         """
         return replace(self, **values)
 
+    def missing_for_test(self, vessel: "Boat") -> str:
+        """Return why recordings of a vessel could not show the effect, in words; "" if they could.
+
+        A diagnosis does not test the effect then, unless it is requested. An example is the
+        interaction of drives whose races never meet. Empty unless a subclass has a reason.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        return ""
+
     def with_all_parameters(self, vessel: "Boat") -> Self:
         """Return a copy of the effect in which every parameter has a value.
 
@@ -434,6 +445,12 @@ class Boat(Protocol):
 
     def effects_of_type(self, idea: str) -> list[Effect]:
         """Return the vessel's effects of a type, and those that can stand for that type."""
+
+    def host_effects(self, effect: Effect) -> Sequence[Effect]:
+        """Return the other effects at which an effect acts, such as the propellers of prop walk."""
+
+    def bindings(self, effect: Effect) -> Mapping[str, str | float]:
+        """Return the channel or constant that each input signal of an effect's law is bound to."""
 
     def limits(self) -> Mapping[str, tuple[float, float]]:
         """Return the allowed range (low, high) of each input of the vessel, by name."""

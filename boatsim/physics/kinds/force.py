@@ -31,14 +31,20 @@ class Force(EffectKind):
     `per_instance_of` is evaluated once for each instance of that other effect, with its signals and
     parameters. An effect that can stand for another one (a propeller for a thruster) converts its
     signals by a compiled function `as_<name>`.
+
+    With a compiled `influence(values, s, t, s2, t2) -> float` the instances act on each other: s, t
+    are the signals and parameters of the instance on which the law acts, s2, t2 those of another
+    one. The law takes the sum over all other instances as its last argument.
     """
 
     parts: ClassVar[tuple[ProgramFunction, ...]] = (WRENCH, AIR_WRENCH)
-    laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
+    laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster", "influence")
     of_air: ClassVar[bool] = False  # a force of the air, logged separately
     # frame to which the force is tied other than the water: "the air", "walls"; empty: none
     tied_to: ClassVar[str] = ""
     law: ClassVar[Callable[..., Wrench]]
+    # influence of another instance of `per_instance_of` on the one on which the law acts
+    influence: ClassVar[Callable[..., float] | None] = None
 
     @classmethod
     def program_lines(
@@ -68,7 +74,8 @@ class Force(EffectKind):
 
         Args:
             m: Motion of the hull.
-            given: Signals and parameters of the instance on which the effect acts, if any.
+            given: Signals and parameters of the instance on which the effect acts, if any, then
+                those of the other instances, for an effect with `influence`.
             signals: Signals of the roles.
         """
         own: tuple[Any, ...] = ()
@@ -76,4 +83,20 @@ class Force(EffectKind):
             own = (type(self).signals(**signals),)
         if type(self).sees_table:
             own += (np.array([*self.table(), 0.0]), np.int64(0))  # no array is empty
+        if type(self).influence is not None:
+            own += (self.total_influence(*given),)
+            given = given[:2]
         return Wrench(*type(self).law(m, self.values(), *given, *own))
+
+    def total_influence(self, *given: tuple[float, ...]) -> float:
+        """Return the sum of the influences of other instances on one instance.
+
+        Args:
+            given: Signals and parameters of the instance, then those of each other instance.
+        """
+        influence = type(self).influence
+        assert influence is not None
+        total = 0.0
+        for i in range(2, len(given), 2):
+            total += influence(self.values(), *given[:2], *given[i : i + 2])
+        return total

@@ -136,6 +136,7 @@ RESTS = {  # effects that are not always there
     "rudder_race",  # of a propeller that backs
     "thrust_fade",  # at the begin of a run
     "ventilation",  # deep below the surface
+    "thruster_hull_interaction",  # with the race directed away from the hull
 }
 SI = {"rad", "m", "kg", "s", "N", "V"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
@@ -215,7 +216,17 @@ def arguments(kind: type[Effect], seed: int, image: bool = False) -> tuple[Any, 
     signals, carrier = drawn_signals(of, seed), drawn(of, seed + 1)
     if image:
         signals, carrier = signals._replace(**mirrored_motion(signals._asdict())), mirrored(carrier)
+    if getattr(kind, "influence", None) is not None:
+        return (signals, carrier.values(), *another(of, seed, image))
     return (signals, carrier.values()) if kind.per_instance_of else (signals,)
+
+
+def another(kind: type[Effect], seed: int, image: bool) -> tuple[Any, ...]:
+    """Signals and values of a second instance, which acts on the first."""
+    signals, carrier = drawn_signals(kind, seed + 100), drawn(kind, seed + 101)
+    if image:
+        signals, carrier = signals._replace(**mirrored_motion(signals._asdict())), mirrored(carrier)
+    return signals, carrier.values()
 
 
 WALLS = {"y_low": "y_high", "y_high": "y_low"}  # change place and sign
