@@ -94,6 +94,7 @@ TO_STARBOARD = {
     "applied_load.yaw",
     "propeller.y",
     "foil.y",
+    "towed_drag.y",
     "toward",
     "east",
     "list",
@@ -129,6 +130,7 @@ TURNS_SIGN |= {"angle", "sin_angle", "comes_from", "sin_comes_from"}
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
 RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
+    "drag_growth",  # at its begin
     "dragged_propeller",  # with the way
     "push",  # before its time and after
     "quay",  # away from the wall
@@ -415,6 +417,7 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
     facts: dict[str, object] = {"walls_m": [-4.0, 4.0, -3.0, 3.0], "track_m": [0.0, 0.0, 1.0, 1.0]}
+    facts |= {"begin_s": 0.0, "water_depth_m": 30.0}
     given = {"file": str(CURRENT)} if "file" in kind.paths else {}
     effect = on_a_vessel(instantiate_neutral_effect(kind, facts, given))
     if isinstance(effect, CoefficientRelease):
