@@ -73,8 +73,11 @@ FORCES = [
     if issubclass(e, Force) and not issubclass(e, RandomForce) and n not in RANDOM
 ]
 CHANNELS = [n for n, e in SHELF.items() if issubclass(e, ChannelEffect)]
-# a current of a table has no image in its parameters; test_current_table.py has its laws
-FLOWS = [n for n, e in SHELF.items() if issubclass(e, WaterFlow) and not e.sees_table]
+# a current of a table or of signals has no image in its parameters: test_current_table.py and
+# test_measured_current.py have their laws
+FLOWS = [
+    n for n, e in SHELF.items() if issubclass(e, WaterFlow) and not e.sees_table and not e.roles
+]
 REACTIONS = [n for n, e in SHELF.items() if issubclass(e, Reaction)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
 SUSPECTS = [
