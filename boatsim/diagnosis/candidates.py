@@ -126,7 +126,11 @@ def candidate_library(
         if missing:
             inapplicable[name] = missing
             continue
+        reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
         if kind.confounded_with and not source.requested:
+            if reason:
+                excluded[name] = reason
+                continue
             others = " or ".join(kind.confounded_with)
             excluded[name] = (
                 f"recordings cannot distinguish it from {others}; add --library {name} to test it"
@@ -140,7 +144,6 @@ def candidate_library(
             continue
         excluded.pop(name, None)
         last.pop(name, None)
-        reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
         reason = reason or _unrecorded_columns(kind, columns)
         for effect in _both_sides_of_lag(
             instantiate_candidate(kind, vessel, known, source.table), vessel
@@ -431,7 +434,7 @@ def instantiate_neutral_effect(
     settings: dict[str, object] = {}
     for fact, places in kind.facts.items():
         if facts and fact in facts:
-            values = np.array(facts[fact], dtype=float)
+            values = np.atleast_1d(np.array(facts[fact], dtype=float))
             settings |= dict(zip(places, values.tolist(), strict=True))
     for name, param in kind.params().items():
         if param.fit:

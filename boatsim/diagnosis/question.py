@@ -29,6 +29,7 @@ from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.near_track import small_track_fact
 from boatsim.diagnosis.problem import Problem, check_uncertain_coefficients
 from boatsim.diagnosis.work import WorkCount
+from boatsim.physics.facts import BEGIN
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -90,7 +91,9 @@ def set_up_estimation_problem(
     uncertainty = _uncertainty(loaded, vessel, config)
     facts = first.notes.facts
     columns = sorted({column for recording in loaded.fitted for column in recording.signals})
-    track = small_track_fact([*loaded.fitted, *loaded.held_out], vessel, config.load)
+    recordings = [*loaded.fitted, *loaded.held_out]
+    derived = small_track_fact(recordings, vessel, config.load)
+    derived[BEGIN] = min(float(recording.t[0]) for recording in recordings)
     libraries, programs = dict[Path | None, CandidateLibrary](), dict[Path | None, Program]()
     for path, own in loaded.vessels.items():
         equal = _file_of_equal_vessel(own, loaded.vessels, programs)
@@ -98,7 +101,7 @@ def set_up_estimation_problem(
             libraries[path], programs[path] = libraries[equal], programs[equal]
             continue
         known = with_specified_position_drift(without_excluded_effects(own, facts), facts)
-        known_facts = {**facts, **track}
+        known_facts = {**facts, **derived}
         libraries[path] = candidate_library(known, loaded.library, known_facts, columns, config)
         candidates = libraries[path].compiled_effects if with_candidates else ()
         programs[path] = Program(known, candidates)

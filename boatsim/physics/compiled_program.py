@@ -174,9 +174,12 @@ class CompiledProgram(Protocol):
         """
 
     def water_velocity(
-        self, t: float, x: float, y: float, p: Array, on: Array
+        self, t: float, x: float, y: float, p: Array, on: Array, act: Array, at: Any
     ) -> tuple[float, float]:
-        """Return the velocity of the water over the ground, north and east [m/s]."""
+        """Return the velocity of the water over the ground, north and east [m/s].
+
+        Measured quantities are among the actuators act[at:].
+        """
 
     def water_displacement(self, t: float, p: Array, on: Array) -> tuple[float, float]:
         """Return how far the water on which waves travel has moved since t = 0 [m]."""

@@ -10,16 +10,21 @@ from math import isfinite
 WALLS = "walls_m"  # x_low, x_high, y_low, y_high [m]
 # middle of all tracks, north and east, and half of their extent [m]; from the recordings
 TRACK = "track_m"
+BEGIN = "begin_s"  # time of the first row of all recordings [s]; from the recordings
+DEPTH = "water_depth_m"  # mean depth of the water [m]
 FORWARD = "forward_speed_mps"  # mean speed ahead [m/s]
 WORDS = {
     WALLS: "the position of the walls",
     TRACK: "a track that stays within a few lengths of the boat",
+    BEGIN: "the time of the first row",
+    DEPTH: "the depth of the water",
     FORWARD: "the mean forward speed",
     "indoors": "whether it was recorded indoors",
     "still_water": "whether the water is still",
     "no_waves": "whether there are no waves",
     "no_water": "whether the craft moves without water",
     "moored": "whether a line holds the boat",
+    "towing": "whether the boat tows something",
     "guided": "whether bearings or rails guide the boat",
     "weighed": "whether the mass was weighed as recorded",
     "steering_measured": "whether the steering angle is measured or the command",
@@ -33,6 +38,7 @@ FLAGS = (  # true or false
     "no_waves",
     "no_water",
     "moored",
+    "towing",
     "guided",
     "weighed",
     "steering_measured",
@@ -81,7 +87,7 @@ def first_invalid_fact(facts: Mapping[str, object]) -> tuple[str, str] | None:
     for fact in FLAGS:
         if fact in facts and not isinstance(facts[fact], bool):
             return fact, "true or false"
-    for fact in WANDER:
+    for fact in (*WANDER, DEPTH):
         if fact in facts and not _is_positive(facts[fact]):
             return fact, "a number above 0"
     given = [fact for fact in WANDER if fact in facts]

@@ -253,7 +253,9 @@ class Stepper(ABC):
     @cached_property
     def _water_velocity(self) -> Callable[[float, float, float], tuple[float, float]]:
         """`water_velocity` of this vessel, a function of time and place."""
-        return partial_call(self.code, "water_velocity", ..., ..., ..., self._values, self._on)
+        last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
+        given = self._values, self._on, self._act, last
+        return partial_call(self.code, "water_velocity", ..., ..., ..., *given)
 
     @cached_property
     def _axes_of_force(self) -> list[str]:

@@ -16,16 +16,16 @@ START = (0.0, 0.1, 0.3)  # the side of the hull is 0.1 m from the fender
 
 def test_a_quay_is_tried_last_only_where_the_boat_stays_near_a_place() -> None:
     near = candidate_library(load_vessel("trial_boat"), facts=TRACK)
-    assert near.tried_last == {"quay": ("tether",)}
+    assert near.tried_last["quay"] == ("tether",)
     assert "quay" not in near.tested_names and "tether" in near.tested_names
     assert "--library quay" in near.excluded["quay"]
     far = candidate_library(load_vessel("trial_boat"))
-    assert not far.tried_last and "quay" in far.inapplicable
+    assert "quay" not in far.tried_last and "quay" in far.inapplicable
 
 
 def test_a_requested_quay_is_an_ordinary_candidate() -> None:
     asked = candidate_library(load_vessel("trial_boat"), ("quay",), TRACK)
-    assert "quay" in asked.tested_names and not asked.tried_last
+    assert "quay" in asked.tested_names and "quay" not in asked.tried_last
 
 
 @pytest.mark.slow

@@ -83,8 +83,9 @@ class FittedRecording:
         if "surge" in axes:
             code = program.estimation_functions
             given = self.parameter_values, self.effect_switches
+            held = np.ascontiguousarray(self.actuator_signals.T)  # (N, K)
             for i, (t, x, y) in enumerate(zip(fields["t"], fields["x"], fields["y"], strict=True)):
-                water[i] = code.water_velocity(t, x, y, *given)
+                water[i] = code.water_velocity(t, x, y, *given, held[i], np.int64(0))
                 carried[i] = code.water_displacement(t, *given)
         north, east = water.T
         fields |= {"cos_psi": c, "sin_psi": s, "wr": fields["w"]}

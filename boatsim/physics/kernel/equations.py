@@ -205,7 +205,7 @@ class EquationWriter:
         )
         water = rate = acceleration = [ZERO, ZERO, ZERO]
         if current and self.moves_horizontally:
-            lines.append_line(f"north, east = water_velocity({self.place_text()}, p, on)")
+            lines.append_line(f"north, east = water_velocity({self.place_text()}, p, on, act, at)")
             water = self.generate_horizontal_vector(lines, R, "water", ("north", "east"))
         if current and self.varying_water:
             self.generate_water_change(lines)
@@ -513,6 +513,7 @@ class EquationWriter:
         """
         lines = CodeLines()
         self.generate_state_unpacking(lines)
+        lines.append_line("at = np.int64(0)")  # the actuators at the begin of the step
         frame = self.generate_kinematics(lines)
         self.generate_carried_water(lines)
         motion = self.motion_constructor_text(frame)

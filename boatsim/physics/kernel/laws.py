@@ -38,8 +38,13 @@ def air_wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
     raise NotImplementedError
 
 
-def water_velocity(t: float, x: float, y: float, p: Array, on: Any) -> tuple[float, float]:
-    """Return the velocity of the water over the ground (north, east) at a time and place [m/s]."""
+def water_velocity(
+    t: float, x: float, y: float, p: Array, on: Any, act: Array, at: Any
+) -> tuple[float, float]:
+    """Return the velocity of the water over the ground (north, east) at a time and place [m/s].
+
+    Measured quantities of the surroundings are among the actuators act[at:].
+    """
     raise NotImplementedError
 
 

@@ -54,6 +54,7 @@ def record_steps(fleet: FleetArrays, dt: float, record: StepRecord) -> None:
                 found = air_body_force(t[0], y[0, : 2 * NQ], act[0], last, p[0], on)
                 for i in range(NQ):
                     air[j, i] = found[i]
-            water[j, 0], water[j, 1] = water_velocity(t[0], motion[0], motion[1], p[0], on)
+            north, east = water_velocity(t[0], motion[0], motion[1], p[0], on, act[0], last)
+            water[j, 0], water[j, 1] = north, east
     done[0] = ends[done[1]]
     done[1] += 1

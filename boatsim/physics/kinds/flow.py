@@ -16,7 +16,9 @@ from boatsim.physics.kinds.effect import (
 )
 from boatsim.physics.waves.water_path import WaterPath
 
-FLOW = ProgramFunction("water_velocity", "t, x, y, p, on", ("north = east = 0.0",), "north, east")
+FLOW = ProgramFunction(
+    "water_velocity", "t, x, y, p, on, act, at", ("north = east = 0.0",), "north, east"
+)
 CHANGES = ("north_t", "north_x", "north_y", "east_t", "east_x", "east_y")
 CHANGE = ProgramFunction(
     "water_change", "t, x, y, p, on", (f"{' = '.join(CHANGES)} = 0.0",), ", ".join(CHANGES)
@@ -43,6 +45,10 @@ class WaterFlow(EffectKind):
       x and y [1/s], and then those of the velocity east;
     - `water_displacement(t, values, p, first) -> (north, east)` [m], how far the water on which
       waves travel has moved since t = 0. Plane waves need one displacement for all places.
+
+    A flow with `roles` is measured: `water_velocity(values, signals) -> (north, east)` [m/s]. It
+    `varies`, but its derivatives are not known: its water exerts no force by its acceleration, and
+    waves travel on still water.
     """
 
     parts: ClassVar = (FLOW, CHANGE, DISPLACEMENT)
@@ -64,7 +70,11 @@ class WaterFlow(EffectKind):
             number: Index of the effect among all effects of the program.
             program: Layout of the program that is generated for the vessel.
         """
-        varies = is_varying_flow(program.effects[number])
+        effect = program.effects[number]
+        measured = bool(type(effect).roles)
+        varies = is_varying_flow(effect) and not measured
+        if measured and part is not FLOW:
+            return
         for site in program.law_calls(number):
             if part is FLOW:
                 place = ("t", "x", "y") if varies else ()

@@ -45,7 +45,7 @@ COMMON: Mapping[str, Entry] = {
     "settle_actuators": Entry((VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "total_body_force": Entry((REAL, VECTOR, VECTOR, WHOLE, VECTOR, VECTOR), tuple_of_numbers),
     "water_displacement": Entry((REAL, VECTOR, VECTOR), tuple_of_numbers),
-    "water_velocity": Entry((REAL, REAL, REAL, VECTOR, VECTOR), tuple_of_numbers),
+    "water_velocity": Entry((REAL, REAL, REAL, VECTOR, VECTOR, VECTOR, WHOLE), tuple_of_numbers),
 }
 FLEET = records.FleetArrays
 SIMULATION: Mapping[str, Entry] = {

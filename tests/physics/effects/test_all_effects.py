@@ -73,8 +73,11 @@ FORCES = [
     if issubclass(e, Force) and not issubclass(e, RandomForce) and n not in RANDOM
 ]
 CHANNELS = [n for n, e in SHELF.items() if issubclass(e, ChannelEffect)]
-# a current of a table has no image in its parameters; test_current_table.py has its laws
-FLOWS = [n for n, e in SHELF.items() if issubclass(e, WaterFlow) and not e.sees_table]
+# a current of a table or of signals has no image in its parameters: test_current_table.py and
+# test_measured_current.py have their laws
+FLOWS = [
+    n for n, e in SHELF.items() if issubclass(e, WaterFlow) and not e.sees_table and not e.roles
+]
 REACTIONS = [n for n, e in SHELF.items() if issubclass(e, Reaction)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
 SUSPECTS = [
@@ -94,6 +97,7 @@ TO_STARBOARD = {
     "applied_load.yaw",
     "propeller.y",
     "foil.y",
+    "towed_drag.y",
     "toward",
     "east",
     "list",
@@ -129,6 +133,7 @@ TURNS_SIGN |= {"angle", "sin_angle", "comes_from", "sin_comes_from"}
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
 RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
+    "drag_growth",  # at its begin
     "dragged_propeller",  # with the way
     "drive_fade",  # at the begin of a run
     "push",  # before its time and after
@@ -429,6 +434,7 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
     facts: dict[str, object] = {"walls_m": [-4.0, 4.0, -3.0, 3.0], "track_m": [0.0, 0.0, 1.0, 1.0]}
+    facts |= {"begin_s": 0.0, "water_depth_m": 30.0}
     given = {"file": str(CURRENT)} if "file" in kind.paths else {}
     effect = on_a_vessel(instantiate_neutral_effect(kind, facts, given))
     if isinstance(effect, CoefficientRelease):
