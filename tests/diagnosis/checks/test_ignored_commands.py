@@ -17,7 +17,7 @@ from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.recordings.table import Recording, write_csv
-from validation.calibration import abilities
+from validation.calibration.bodies.four_thrusters import four_thrusters
 
 OFF = 70.0  # [s]
 
@@ -39,7 +39,7 @@ def checked(tmp_path: Path, speed: float | None) -> Checked:
     From a time on the second one drifts abeam with its drives off, while the program goes on to log
     commands; None: it obeys to the end.
     """
-    body = abilities.boat()
+    body = four_thrusters()
     vessel = body.vessel.save(tmp_path / body.vessel.name).file
     signals = []
     for seed in range(3):

@@ -1,0 +1,1 @@
+"""Bodies whose vessel file lacks nothing, simulated without boatsim."""
