@@ -14,7 +14,7 @@ makes such a set):
   (adds more than 6 nats in the program that made the trials);
 - a name is wrong unless it is true, or the answer states that it cannot be distinguished from a
   true one;
-- a cause that was outside the library of the program that made the trials, and has been added since,
+- a cause outside the library of the program that made the trials, which has been added since,
   counts as flagged and described if it is named;
 - held-out skill is 1 if the patched boat follows run_3 as closely as the fitted true structure, 0
   if it is no better than the recalibrated nominal;
