@@ -62,8 +62,8 @@ class Real:
     dead: float = 0.0  # [N] of command that friction takes
     throttle: bool = False  # commands set the revolutions, whose square is the thrust
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
-    # share of full thrust, ahead and astern, at which a motor controller limits the current
-    most: tuple[float, float] = (1.0, 1.0)
+    # share of full thrust, ahead as astern, at which a motor controller limits the current
+    most: float = 1.0
     fade: float = 0.0  # [1/s] share of the thrust that an emptying battery loses, about 20 s
     # power of the supply's voltage with which thrust grows; its share of the nominal one at the
     # begin of a run and at its end
@@ -200,9 +200,8 @@ def wanted(command: Array, real: Real) -> Array:
     free = command - real.dead * np.tanh(command / real.dead) if real.dead else command
     if real.throttle:
         free = free * abs(free)  # full thrust is 1 N
-    if real.most != (1.0, 1.0):  # the limit sets in gradually
-        limit = np.where(free > 0.0, *real.most)
-        free = free / (1.0 + (abs(free) / limit) ** 12) ** (1 / 12)
+    if real.most != 1.0:  # the limit sets in gradually
+        free = free / (1.0 + (abs(free) / real.most) ** 12) ** (1 / 12)
     return np.asarray(free * (1.0 + (np.array(real.power) - 1.0) * (0.6 + 0.6 * abs(command))))
 
 

@@ -266,7 +266,7 @@ def test_the_limit_of_one_fan_is_found_with_the_fan() -> None:
     made = [floated(seed, limits=limits, strongest=FULL) for seed in (1, 2)]
     ranking = ranked(*made, tested=LIMITS)
     assert [one.name for one in ranking.named] == ["drive_limit_b1_N"]
-    value, sd = ranking.best.value("drive_limit_b1_N", "ahead")
+    value, sd = ranking.best.value("drive_limit_b1_N", "share")
     assert abs(value - 0.4) < max(4.0 * sd, 0.01)
 
 

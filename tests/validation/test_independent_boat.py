@@ -38,7 +38,7 @@ CASES = (
     Case("thrust_lag", Real(lag=0.45), {"time_constant_s": 0.45}, more=True),
     Case("thrust_deadband", Real(dead=0.12), {"width_N": 0.12}),
     Case("thrust_exponent", Real(throttle=True), {"exponent": 2.0}),
-    Case("thrust_limit", Real(most=(0.6, 0.5)), {"ahead": 0.6, "astern": 0.5}),
+    Case("thrust_limit", Real(most=0.6), {"share": 0.6}),
     Case("thrust_fade", Real(fade=0.008), {"rate_pers": 0.008}),
     Case("thrust_imbalance", Real(power=(1.15, 0.85)), {"fraction": 0.15}),
     # the loss grows with the load

@@ -107,7 +107,7 @@ def propeller_interaction(boat: Boat, rng: Rng, s: float) -> Cause:
     return Cause("outside_library:propeller_interaction", drive=drive)
 
 
-def thrust_hysteresis(boat: Boat, rng: Rng, s: float) -> Cause:
+def asymmetric_lag(boat: Boat, rng: Rng, s: float) -> Cause:
     """Let the propellers gain output quickly and lose it slowly, as with a freewheeling clutch."""
     slow = 2.0 * s * boat.scale
     quick = 0.1 * slow
@@ -119,7 +119,7 @@ def thrust_hysteresis(boat: Boat, rng: Rng, s: float) -> Cause:
 
         return apply_dynamics(b.drive.thrusts, follow)
 
-    return Cause("outside_library:thrust_hysteresis", drive=drive)
+    return Cause("outside_library:asymmetric_lag", drive=drive)
 
 
 def drive_hunting(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -248,7 +248,7 @@ def one_sided_rub(boat: Boat, rng: Rng, s: float) -> Cause:
 
 IN_THE_PLANE = (drift_moment, flooded_tank)
 OF_FREE_SPEED = (weed_bunch, spray_rail)
-OF_PROPELLERS = (thrust_hysteresis, bank_suction)
+OF_PROPELLERS = (asymmetric_lag, bank_suction)
 OF_ROLL = (roll_tank, one_sided_rub)  # the Otter rolls too little to show them
 FURTHER: Mapping[str, tuple[Maker, ...]] = {
     "blueboat": (*IN_THE_PLANE, *OF_FREE_SPEED, *OF_PROPELLERS, propeller_interaction),

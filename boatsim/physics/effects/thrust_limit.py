@@ -32,14 +32,13 @@ def limit_thrust(x: float, q: Any) -> float:
 
     Args:
         x: Thrust command [N].
-        q: Parameters with the shares `ahead` and `astern`, and with the largest commands
-            `full_ahead` and `full_astern` [N]; a command in a direction without a largest command
-            is returned unchanged.
+        q: Parameters with the `share`, and with the largest commands `full_ahead` and
+            `full_astern` [N]; a command in a direction without a largest command is returned
+            unchanged.
     """
     full = q.full_ahead if x > 0.0 else q.full_astern
-    share = q.ahead if x > 0.0 else q.astern
-    half = min(ROUNDED, 1.0 - share) * full
-    most = share * full
+    half = min(ROUNDED, 1.0 - q.share) * full
+    most = q.share * full
     beyond = abs(x) - (most - half)  # beyond the begin of the corner
     if beyond <= 0.0 or half <= 0.0:
         return x
@@ -72,10 +71,12 @@ def transform_signal(
 
 @dataclass(frozen=True)
 class ThrustLimit(ChannelEffect):
-    """Limit of the thrust, as a share of the largest command, ahead and astern.
+    """Limit of the thrust, ahead and astern the same share of the largest command.
 
     y = sign(x) min(|x|, k T), with the largest command T of the drives ahead or astern, and with a
-    corner that is rounded over 0.03 T on either side of the limit. A share of 1 is no limit.
+    corner that is rounded over 0.03 T on either side of the limit. A share of 1 is no limit. With a
+    share for each direction, recordings could often not distinguish a limit astern from propellers
+    that push less astern (`weak_reverse`).
 
     Where the recorded commands are always at full thrust or at rest, a limit is the same as a
     smaller gain of the thrust.
@@ -84,15 +85,10 @@ class ThrustLimit(ChannelEffect):
     formula: ClassVar[str] = (
         r"\begin{aligned} y &= \operatorname{sgn}(x) \begin{cases} |x| & |x| \le k T - h \\ "
         r"|x| - \frac{(|x| - k T + h)^2}{4 h} & \text{otherwise} \\ k T & |x| \ge k T + h "
-        r"\end{cases}, \quad h = \min(0.03, 1 - k) \, T \\ (k, T) &= \begin{cases} (k_+, T_+) & "
-        r"x > 0 \\ (k_-, T_-) & x < 0 \end{cases} \end{aligned}"
+        r"\end{cases} \\ h &= \min(0.03, 1 - k) \, T, \quad T = \begin{cases} T_+ & x > 0 \\ "
+        r"T_- & x < 0 \end{cases} \end{aligned}"
     )
-    symbols: ClassVar = {
-        "ahead": "k_+",
-        "astern": "k_-",
-        "full_ahead": "T_+",
-        "full_astern": "T_-",
-    }
+    symbols: ClassVar = {"share": "k", "full_ahead": "T_+", "full_astern": "T_-"}
     words: ClassVar[str] = "the thrust is limited: large commands give no more than a part of it"
     shown_by: ClassVar[str] = "runs at several thrust levels between half and full"
     source: ClassVar[str] = (
@@ -103,33 +99,18 @@ class ThrustLimit(ChannelEffect):
     stage: ClassVar[int] = COMMANDS
     transform_signal: ClassVar = transform_signal
     # a limit has no slope at commands below it, so that a fit must start beneath the large ones
-    starts: ClassVar = (
-        {"ahead": 0.85, "astern": 0.85},
-        {"ahead": 0.6, "astern": 0.6},
-        {"ahead": 0.35, "astern": 0.35},
-    )
+    starts: ClassVar = ({"share": 0.85}, {"share": 0.6}, {"share": 0.35})
 
-    ahead: float = param(
+    share: float = param(
         1.0,
         low=EARLIEST,
         high=1.0,
         unit="",
-        words="limit of the thrust ahead, as a share of the largest command ahead; 1: no limit",
+        words="limit of the thrust, as a share of the largest command; 1: no limit",
         fit=True,
         spread=0.4,
         inactive_value=1.0,
-        in_per_cent="the thrust ahead reaches at most {share} of the largest command",
-    )
-    astern: float = param(
-        1.0,
-        low=EARLIEST,
-        high=1.0,
-        unit="",
-        words="limit of the thrust astern, as a share of the largest command astern; 1: no limit",
-        fit=True,
-        spread=0.4,
-        inactive_value=1.0,
-        in_per_cent="the thrust astern reaches at most {share} of the largest command",
+        in_per_cent="the thrust reaches at most {share} of the largest command",
     )
     full_ahead: float = name_code_parameter("largest command ahead")
     full_astern: float = name_code_parameter("largest command astern")
@@ -151,11 +132,8 @@ DriveLimit = preset_effect(
     shown_by="runs of this drive at several thrust levels between half and full",
     once_per="actuator",
     frees={
-        "ahead": {
-            "words": "limit of the thrust ahead, as a share of the largest command of this drive",
-        },
-        "astern": {
-            "words": "limit of the thrust astern, as a share of the largest command of this drive",
+        "share": {
+            "words": "limit of the thrust, as a share of the largest command of this drive",
         },
     },
 )

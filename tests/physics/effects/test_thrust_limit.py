@@ -9,14 +9,14 @@ from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_limit import ROUNDED, limit_thrust
 
 
-def limited(command: float, ahead: float = 0.5, astern: float = 0.25) -> float:
-    values = SimpleNamespace(ahead=ahead, astern=astern, full_ahead=4.0, full_astern=2.0)
+def limited(command: float, share: float = 0.5) -> float:
+    values = SimpleNamespace(share=share, full_ahead=4.0, full_astern=2.0)
     return float(limit_thrust.py_func(command, values))
 
 
 @pytest.mark.parametrize(
     ("command", "thrust"),
-    [(0.0, 0.0), (1.8, 1.8), (3.0, 2.0), (4.0, 2.0), (-0.4, -0.4), (-1.0, -0.5), (-2.0, -0.5)],
+    [(0.0, 0.0), (1.8, 1.8), (3.0, 2.0), (4.0, 2.0), (-0.4, -0.4), (-1.5, -1.0), (-2.0, -1.0)],
 )
 def test_thrust_follows_the_command_up_to_the_limit(command: float, thrust: float) -> None:
     assert limited(command) == pytest.approx(thrust)
@@ -25,7 +25,7 @@ def test_thrust_follows_the_command_up_to_the_limit(command: float, thrust: floa
 @pytest.mark.parametrize("share", [0.5, 0.98, 0.999])
 def test_value_and_slope_are_continuous_in_the_command(share: float) -> None:
     x = np.linspace(0.0, 4.0, 400_001)
-    y = np.array([limited(command, ahead=share) for command in x.tolist()])
+    y = np.array([limited(command, share) for command in x.tolist()])
     slope = np.diff(y) / np.diff(x)
     half = min(ROUNDED, 1.0 - share) * 4.0  # [N] over which the slope falls from 1 to 0
     assert np.abs(np.diff(slope)).max() < 1.01 * (x[1] - x[0]) / (2.0 * half) + 1e-6
@@ -34,9 +34,9 @@ def test_value_and_slope_are_continuous_in_the_command(share: float) -> None:
 
 def test_a_limit_at_full_command_changes_nothing_and_has_a_slope_there() -> None:
     for command in np.linspace(-2.0, 4.0, 61).tolist():
-        assert limited(command, ahead=1.0, astern=1.0) == command
+        assert limited(command, 1.0) == command
     for less in (1e-3, 1e-6):  # full command ahead loses what the limit is lower
-        assert (4.0 - limited(4.0, ahead=1.0 - less)) / less == pytest.approx(4.0)
+        assert (4.0 - limited(4.0, 1.0 - less)) / less == pytest.approx(4.0)
 
 
 def test_full_command_is_the_limit_of_the_channels() -> None:
