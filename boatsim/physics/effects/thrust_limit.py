@@ -108,7 +108,7 @@ class ThrustLimit(ChannelEffect):
         unit="",
         words="limit of the thrust, as a share of the largest command; 1: no limit",
         fit=True,
-        spread=0.4,
+        spread=0.25,  # a limit below half of the range that the file allows is rare
         inactive_value=1.0,
         in_per_cent="the thrust reaches at most {share} of the largest command",
     )
