@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from alike import long, slow
+from alike import long
 from answers import diagnosed, named, nothing_missing
 from pushed_boat import BOAT, push, sail
 from simulated_runs import simulated
@@ -64,7 +64,7 @@ def test_thrust_that_falls_with_time_is_not_taken_for_growing_drag(tmp_path: Pat
     assert "drag_growth" not in [one["name"] for one in answer["effects"]]
 
 
-@pytest.mark.parametrize("rate", [slow(0.3), long(0.0)])
+@pytest.mark.parametrize("rate", [long(0.3), long(0.0)])
 def test_on_another_vessel_it_is_named_only_where_it_acts(tmp_path: Path, rate: float) -> None:
     more = [{"use": "drag_growth", "rate": rate}] if rate else []
     runs = [simulated("catamaran", PUSHED, seed, more) for seed in (1, 2, 3)]

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from alike import long, slow
+from alike import long
 from answers import diagnosed, named, nothing_missing
 from pushed_boat import sail
 from simulated_runs import simulated
@@ -62,7 +62,7 @@ def test_straight_tracks_do_not_distinguish_a_towed_dinghy_from_damping(tmp_path
     assert {"towed_drag", "quadratic_damping"} <= {one["name"], *one["tied_with"]}
 
 
-@pytest.mark.parametrize("towed", [slow(True), long(False)])
+@pytest.mark.parametrize("towed", [long(True), long(False)])
 def test_on_another_vessel_it_is_named_only_where_it_is_towed(tmp_path: Path, towed: bool) -> None:
     more = [DINGHY] if towed else []
     runs = [simulated("catamaran", PUSHED, seed, more) for seed in (1, 2, 3)]

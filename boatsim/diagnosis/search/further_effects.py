@@ -16,6 +16,7 @@ from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.screening import screen
+from boatsim.physics.groups import group_of, without_group
 
 NOT_SOUGHT = "effects that hide each other were not sought, although much remains unexplained"
 
@@ -57,7 +58,7 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
     if found is not None or room < 2:
         return found
     if sets.skips_thorough_search:  # second effects are those that promised most alone
-        order = order[: sets.config.select.saving_seconds]
+        order = _best_of_each_kind(sets, order)[: sets.config.select.saving_seconds]
     pairs: list[Fit] = []
     for single in singles:
         if _ends(sets):
@@ -65,6 +66,18 @@ def _find_further_effects(sets: CandidateSets, best: Fit) -> Fit | None:
             break
         pairs += _additions(sets, single, order.copy(), least)
     return _sufficient(pairs, best.evidence + 2.0 * sets.required_gain)
+
+
+def _best_of_each_kind(sets: CandidateSets, order: list[str]) -> list[str]:
+    """The first candidate of each kind and group: one drive of several with the same fault.
+
+    Otherwise the drives of a vessel with many would leave no room for other kinds.
+    """
+    found: dict[tuple[type, str], str] = {}
+    for name in order:
+        kind = type(sets.problem.candidates[without_group(name)])
+        found.setdefault((kind, group_of(name)), name)
+    return list(found.values())
 
 
 def _sufficient(fits: list[Fit], least: float) -> Fit | None:
@@ -96,7 +109,7 @@ def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -
             names.append(name)
     screened = screen(problem, calm, names)
     order[:] = sorted(names, key=lambda name: -screened[name].evidence)
-    for name in order[: sets.config.select.further_fits]:
+    for name in _best_of_each_kind(sets, order)[: sets.config.select.further_fits]:
         start = sets.gauss_newton_steps_at_assumed_disturbance(screened[name])
         if np.isfinite(start.evidence) and sets.skips_thorough_search:
             start = fit(problem, start)

@@ -250,7 +250,7 @@ def test_no_loss_is_found_where_there_is_none(name: str, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("period", "toward"), [(1.6, pi), long(2.5, 0.6)])
+@pytest.mark.parametrize(("period", "toward"), [long(1.6, pi), long(2.5, 0.6)])
 def test_no_loss_is_found_in_waves_of_which_only_the_motion_is_recorded(
     period: float, toward: float, tmp_path: Path
 ) -> None:
