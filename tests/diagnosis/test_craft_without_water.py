@@ -11,6 +11,7 @@ from scipy.integrate import odeint
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -310,3 +311,24 @@ def test_the_power_of_the_voltage_is_found_and_none_where_the_thrust_does_not_de
     assert abs(value - 1.6) < max(4.0 * sd, 0.02)
     sound = [floated(seed, charge=one) for seed, one in enumerate(charges, 3)]
     assert ranked(*sound, tested=tested, boat=ELECTRIC).named == ()
+
+
+def test_full_fits_go_to_other_drives_before_other_faults_of_one_that_was_fitted():
+    recording = floated(1)
+    program = Program(CRAFT, candidate_library(CRAFT).compiled_effects)
+    mapped = [map_recording(recording, program)]
+    problem = Problem(mapped, prior_noise_levels(CRAFT, [recording]), {"thrust": 0.05})
+    sets = CandidateSets(problem, (), problem.nominal_hypothesis())
+    key = frozenset[str]()
+    ahead = [
+        "drive_gain_error_b1",
+        "drive_exponent_b1_N",
+        "drive_fade_b1",
+        "drive_lag_a1_N",
+        "slope",
+    ]
+    assert sets.order_of_full_fits(key, ahead) == ahead
+    sets.fitted_in_full.add((key, "drive_gain_error_b1"))
+    left = ["drive_lag_a1_N", "slope", "drive_exponent_b1_N", "drive_fade_b1"]
+    assert sets.order_of_full_fits(key, ahead) == left
+    assert sets.order_of_full_fits(frozenset({"payload"}), ahead) == ahead

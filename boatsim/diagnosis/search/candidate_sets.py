@@ -28,7 +28,7 @@ from boatsim.diagnosis.search.screening import (
     starting_points,
 )
 from boatsim.physics.base import RandomForce
-from boatsim.physics.groups import without_group
+from boatsim.physics.groups import group_of, without_group
 
 SCREENING = (0.2, 0.5)  # of a selection, by experience, is the first screening
 
@@ -314,7 +314,7 @@ class CandidateSets:
         while fits < most:
             promising = fits_with_evidence_above(allowed, best.evidence)
             ahead = leading_candidates(promising, best, self.config.select)
-            ahead = [n for n in ahead if (key, n) not in self.fitted_in_full]
+            ahead = self.order_of_full_fits(key, ahead)
             if not ahead:
                 break
             if self.budget.is_spent:
@@ -333,6 +333,31 @@ class CandidateSets:
                 found = self.fit_with_added_effect(best, name, found)
             allowed[name] = known[name] = found
         return known
+
+    def order_of_full_fits(self, key: Set, names: Sequence[str]) -> list[str]:
+        """Return candidates that were not fitted in full, in the order in which they are.
+
+        One fault of a drive resembles its other ones, which would leave no fits to other causes:
+        those of drives with a full fit come last.
+
+        Args:
+            key: Effects of the fit to which they are added.
+            names: Candidates that promise most, in that order.
+        """
+        fitted = {name for other, name in self.fitted_in_full if other == key}
+        drives = {self._single_drive(name) for name in fitted} - {None}
+        left = [name for name in names if name not in fitted]
+        return sorted(left, key=lambda name: self._single_drive(name) in drives)
+
+    def _single_drive(self, name: str) -> tuple[str, str] | None:
+        """The drive, and the group of recordings, that a candidate concerns alone."""
+        effect = self.problem.candidates[without_group(name)]
+        if not type(effect).once_per or not effect.on:
+            return None
+        vessel, drive = self.problem.program.vessel, next(iter(effect.on))
+        if (mounted := vessel.effect(drive)) is not None:
+            drive = str(vessel.bindings(mounted).get("thrust", drive))
+        return drive, group_of(name)
 
     @property
     def skips_thorough_search(self) -> bool:
