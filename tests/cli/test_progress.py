@@ -20,7 +20,7 @@ STAGES = (
     "reading",
     "checking the log",
     "fitting",
-    "screening 45 candidate effects",
+    "screening 46 candidate effects",
     "selecting",
     "free runs",
     "writing",
@@ -252,7 +252,7 @@ def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the
     assert running.returncode == 0 and b"The model leaves out" in out
     assert (
         "━" in text
-        and "screening 45 candidate effects" in text
+        and "screening 46 candidate effects" in text
         and "left" in text
         and "best so far" in text
     )

@@ -234,7 +234,7 @@ def ranking_of(name: str, loss: float, folder: Path) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["platform", "otter"])
+@pytest.mark.parametrize("name", ["platform", long("otter")])
 def test_a_loss_near_the_surface_is_found_with_its_size(name: str, tmp_path: Path) -> None:
     ranking = ranking_of(name, 1.0, tmp_path)
     assert [one.name for one in ranking.named] == ["ventilation"]
