@@ -100,3 +100,19 @@ def thrusters(places: Mapping[str, tuple[float, float, float]]) -> list[dict[str
         on = {"thrust": f"{name}_N", "angle": float(angle)}
         found.append({"use": "thruster", "name": name, "on": on, "x": x, "y": y})
     return found
+
+
+def boat_rates(state: Array, force: Array, inertia: Array, damping: Array) -> Array:
+    """Return the rates (6,) of north, east, heading, surge, sway and yaw of a boat in a plane.
+
+    Args:
+        state: North, east [m], heading [rad], u, v [m/s] and r [rad/s].
+        force: Surge force, sway force [N] and yaw moment [N m].
+        inertia: Mass and moment of inertia with added mass (3,) [kg, kg m^2].
+        damping: Linear damping (3,) [N s/m, N m s].
+    """
+    u, v, r = state[3:]
+    c, k = np.cos(state[2]), np.sin(state[2])
+    turning = np.array([inertia[1] * v * r, -inertia[0] * u * r, (inertia[0] - inertia[1]) * u * v])
+    speeds = (force + turning - damping * state[3:]) / inertia
+    return np.array([u * c - v * k, u * k + v * c, r, *speeds])

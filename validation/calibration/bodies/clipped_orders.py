@@ -10,6 +10,7 @@ from validation.calibration.bodies.body import (
     Body,
     Rng,
     ambient,
+    boat_rates,
     integrate,
     planar_forces,
     steps,
@@ -55,11 +56,7 @@ def clipped_orders() -> Body:
         forces += ambient(rng, times, mass, length, (1.0, 1.0, LEVER * length))
 
         def rates(s: Array, i: int) -> Array:
-            u, v, r = s[3:]
-            c, k = np.cos(s[2]), np.sin(s[2])
-            turning = np.array([M[1] * v * r, -M[0] * u * r, (M[0] - M[1]) * u * v])
-            speeds = (forces[i] + turning - factors[:3] * damping * s[3:]) / M
-            return np.array([u * c - v * k, u * k + v * c, r, *speeds])
+            return boat_rates(s, forces[i], M, factors[:3] * damping)
 
         states = integrate(rates, np.zeros(6), times)
         states += rng.standard_normal(states.shape) * [0.02, 0.02, 0.01, 0.0, 0.0, 0.005]

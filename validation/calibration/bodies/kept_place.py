@@ -10,6 +10,7 @@ from validation.calibration.bodies.body import (
     Body,
     Rng,
     ambient,
+    boat_rates,
     integrate,
     planar_forces,
     thrusters,
@@ -69,11 +70,7 @@ def kept_place() -> Body:
             total = forces[i] + thrust
 
             def rates(s: Array, _: int, total: Array = total) -> Array:
-                u, v, r = s[3:]
-                c, k = np.cos(s[2]), np.sin(s[2])
-                turning = np.array([M[1] * v * r, -M[0] * u * r, (M[0] - M[1]) * u * v])
-                speeds = (total + turning - factors[:3] * damping * s[3:]) / M
-                return np.array([u * c - v * k, u * k + v * c, r, *speeds])
+                return boat_rates(s, total, M, factors[:3] * damping)
 
             states.append(integrate(rates, state, times[i : i + 2])[-1])
         pose = np.array(states)[:, :3]
