@@ -36,7 +36,10 @@ ALONG = (
     "mmg_hull.R_0",
     "abkowitz_hull.X_u",
 )
-# Increase of the viscous resistance: coefficient and exponent of the ratio of draught to depth
+# Increase of the viscous resistance: coefficient and exponent of the ratio of draught to depth.
+# They are not verified, since the text of Raven's report was not available. By the abstract of his
+# paper of PRADS 2016 the method corrects each component of the resistance separately; this is the
+# viscous one.
 INCREASE, EXPONENT = 0.57, 1.79
 
 
@@ -84,7 +87,7 @@ class FiniteDepth(CoefficientRelease):
         "L. I. Sedov, Two-dimensional problems in hydrodynamics and aerodynamics, 1965: added "
         "mass; R. T. Jones, NACA report 835, 1946: damping by added mass; H. C. Raven, A "
         "correction method for shallow-water effects on ship speed trials, MARIN report "
-        "98800-1-RD, 2022: resistance"
+        "98800-1-RD, 2022: resistance, its two numbers not verified against this text"
     )
     facts: ClassVar = {DEPTH: ("depth",)}
 

@@ -11,8 +11,12 @@ from boatsim.physics.debugging import python_function
 from boatsim.physics.drive_ranges import DriveRange, drive_ranges
 from boatsim.physics.effects.thruster import thrust_wrench_at_mount
 
-# Propeller diameter over draught of a bulk carrier or tanker, largest usual value: MAN Diesel &
-# Turbo, Basic Principles of Ship Propulsion, 2011, chapter 2. Thrusters of small boats are alike.
+# Propeller diameter over draught T of a bulk carrier or tanker, largest usual value: MAN Diesel &
+# Turbo, Basic Principles of Ship Propulsion, 2011, chapter 2, not verified against its text. It
+# lies among the regressions of H. O. Kristensen and M. Luetzen 2013, as in the function calcPropDia
+# of a public R package: 0.395 T + 1.3 m for tankers and bulk carriers, which is 0.49 T at 13.6 m;
+# 0.623 T - 0.16 m for container ships; 0.713 T - 0.08 m for others. That small boats are alike is
+# an assumption.
 DIAMETER_PER_DRAUGHT = 0.65
 # Two drives at one depth are at least a diameter apart, or their blades would meet. The published
 # ratio is zero for one place, so that nearer mounts count as one diameter apart.
@@ -20,7 +24,12 @@ LEAST_DIAMETERS = 1.0
 # Smallest published loss for which a diagnosis tests the effect: less than a tenth of the thrust
 # of one drive is within the usual uncertainty of its thrust.
 LEAST_LOSS = 0.1
-WIDTH = 130.0  # [deg^3] of the race, from the published ratio with a steering angle
+# Base of the ratio for two drives in line, and [deg^3] width of the race with a steering angle. The
+# text of the paper was not available. Public code has the same numbers: the package
+# pyMarineCybernetics the ratio in line, as that of the American Bureau of Shipping, and a
+# manoeuvring model with three azimuth thrusters both of them.
+BASE = 0.75
+WIDTH = 130.0
 
 
 @njit  # not inlined: a vessel with six drives has thirty calls, and would take longer to compile
@@ -31,7 +40,7 @@ def thrust_ratio(distance: float, angle: float) -> float:
         distance: Distance from the other drive over the propeller diameter.
         angle: Angle between the race and the line from the other drive [rad], 0 to pi.
     """
-    ratio = 1.0 - 0.75 ** (max(distance, LEAST_DIAMETERS) ** (2.0 / 3.0))
+    ratio = 1.0 - BASE ** (max(distance, LEAST_DIAMETERS) ** (2.0 / 3.0))
     steered = (ratio * angle * 180.0 / pi) ** 3
     return ratio + (1.0 - ratio) * steered / (WIDTH + steered)
 
@@ -103,7 +112,8 @@ class ThrusterInteraction(Force):
     shown_by: ClassVar[str] = "one drive alone, then with the race of another one turned on it"
     source: ClassVar[str] = (
         "J. Dang, H. Laheij, Hydrodynamic Aspects of Steerable Thrusters, Dynamic Positioning "
-        "Conference 2004, section 5.2"
+        "Conference 2004, section 5.2; the ratio in line as quoted for the American Bureau of "
+        "Shipping in the open package pyMarineCybernetics"
     )
     per_instance_of: ClassVar[str] = "thruster"
     law: ClassVar = law

@@ -13,7 +13,9 @@ from boatsim.physics.waves.elevation import elevation_at_hull
 from boatsim.physics.waves.field import WaveField
 from boatsim.physics.waves.sea_parameters import SeaParameters
 
-# Published fit of the thrust diminution factor beta = 1 - LOSS (1 - SLOPE h / R)^POWER
+# Fit of the thrust diminution factor beta = 1 - LOSS (1 - SLOPE h / R)^POWER. The three numbers are
+# not verified: the texts of the works in `source` were not available. They agree with the limit of
+# h / R = 1.3, where beta becomes 1, since 1.3 SLOPE = 1.
 LOSS = 0.675  # loss of thrust of a propeller whose shaft lies at the surface
 SLOPE = 0.769  # from an immersion of R / SLOPE = 1.3 R on no thrust is lost
 POWER = 1.258
@@ -88,8 +90,9 @@ class Ventilation(SeaParameters, Force):
     shown_by: ClassVar[str] = "constant thrust while the boat pitches and heaves on still water"
     source: ClassVar[str] = (
         "K. Minsaas, O. M. Faltinsen, B. Persson, On the importance of added resistance, propeller "
-        "immersion and propeller ventilation for large ships in a seaway, PRADS 1983; fit of beta "
-        "as in O. N. Smogeli, Control of Marine Propellers, PhD, NTNU 2006"
+        "immersion and propeller ventilation for large ships in a seaway, PRADS 1983; O. N. "
+        "Smogeli, Control of Marine Propellers, PhD, NTNU 2006; the three numbers of the fit are "
+        "not verified against these texts"
     )
     per_instance_of: ClassVar[str] = "thruster"
     sees_table: ClassVar[bool] = True

@@ -11,7 +11,9 @@ SECOND = 2.0  # [m] length of the boat whose sway and yaw die out in 1 s, the Ot
 # earlier
 LIFT_AT = -0.3
 SLOW = 0.1  # of a slender hull's lift at an easy speed, at rest: friction and keel, as in surge
-SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F. Hoerner 1965
+# drag coefficient of a section across the flow: 0.85 by Hoerner's curve for a pontoon of the Otter
+# without load, which has 0.93 beams per two draughts (MSS Hoerner.m)
+SECTION = 0.8
 
 
 class ClarkeDerivatives(NamedTuple):
@@ -113,4 +115,4 @@ def damping_at_rest(hull: HullParticulars) -> tuple[Estimate, Estimate]:
 
 def section_drag_coefficient() -> Estimate:
     """Return the assumed cross-flow drag coefficient of hull sections."""
-    return Estimate(SECTION, "Otter 0.85 (MSS otter.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")
+    return Estimate(SECTION, "Otter 0.85 (MSS Hoerner.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")

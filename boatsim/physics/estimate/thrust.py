@@ -6,7 +6,7 @@ from boatsim.physics.estimate.base import Estimate, HullParticulars
 from boatsim.physics.particulars import GRAVITY
 
 # of the thrust at rest, at top speed: K_T of a Wageningen B-screw of P/D 0.7 at J 0.4 by that at J
-# 0
+# 0, which is 0.51 to 0.59 for 3 or 4 blades and area ratios of 0.7 to 0.4, rounded down
 LEFT = 0.5
 FAST = 0.4  # Froude number of the top speed if none is given: the hump of the wave resistance
 OF_WEIGHT = 0.4  # Otter: 24.4 kgf of 55 kg, MSS otter.m
