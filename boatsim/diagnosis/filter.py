@@ -148,6 +148,19 @@ class FilterPass:
         """
         return float(np.sum(np.log(self.scale[self.scale > 0.0])))
 
+    @property
+    def log_density_of_rows(self) -> Array:
+        """(N,) log density of the measurements of each row, given the rows before.
+
+        It is known up to a constant. An outlier counts with the inverse standard deviation that the
+        filter gave it.
+        """
+        errors = self.whitened.reshape(self.scale.shape)
+        recorded = self.scale > 0.0
+        log_scale = np.log(np.where(recorded, self.scale, 1.0))
+        found: Array = np.sum(log_scale - 0.5 * errors**2, axis=1)
+        return found
+
 
 class SmoothedStates(NamedTuple):
     """States of a recording estimated by the Rauch-Tung-Striebel smoother, with their covariances.

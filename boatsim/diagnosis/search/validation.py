@@ -13,6 +13,7 @@ from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.evidence import unexplained_evidence, unknown_cause_threshold
 from boatsim.diagnosis.search.generalization import Squares
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
+from boatsim.physics.base import Array
 
 
 def misleading_effect(sets: CandidateSets, best: Fit, held_out: Recordings) -> str:
@@ -53,10 +54,12 @@ def refuted_effect(
 ) -> str:
     """Return the name of an effect that held-out recordings refute, or "".
 
-    Either these become clearly less likely by it, or all recordings together gain less by it and
-    its look-alikes than is required and than the laws of the other effects may be off by. The
+    Either these become less likely by it, or all recordings together gain less by it and its
+    look-alikes than is required and than the laws of the other effects may be off by. The
     likelihood compares each row with the rows before. Free runs over held-out recordings must not
-    require the effect all the same, as they may where these go beyond the fitted ones.
+    require the effect all the same, as they may where these go beyond the fitted ones. Where only a
+    few moments are less likely by it, such as impacts on a wall whose place is known to
+    centimetres, free runs need not require it: it suffices that they are no worse with it.
 
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.
@@ -91,9 +94,52 @@ def refuted_effect(
     unnecessary = []
     for name in sorted(doubtful):
         misfit = generalization.error_ratio(generalization.mean_square_errors(runs, name), with_all)
-        if misfit < sets.config.validate.worse**2:
+        least = sets.config.validate.worse**2
+        if name in unlikely and not _clearly_less_likely(sets, best, fits[name], held_out):
+            least = 1.0
+        if misfit < least:
             unnecessary.append(name)
     return min(unnecessary, key=lambda name: gains[name], default="")
+
+
+def _clearly_less_likely(
+    sets: CandidateSets, before: Fit, without: Fit, held_out: Recordings
+) -> bool:
+    """Whether held-out recordings are less likely with an effect by some standard errors.
+
+    The losses in stretches as long as a free run are compared, as in the test of Vuong (1989),
+    "Likelihood ratio tests for model selection and non-nested hypotheses", Econometrica 57. A
+    loss in few of them has a large standard error.
+
+    Args:
+        sets: Cache of the fits of candidate sets, with the estimation problem.
+        before: The fit with the effect.
+        without: The fit without it.
+        held_out: Held-out recordings, which no fit has used.
+
+    Returns:
+        True, too, where there are too few stretches for a standard error.
+    """
+    config = sets.config.validate
+    log_density = _log_density_of_stretches(sets, before, held_out)
+    losses = _log_density_of_stretches(sets, without, held_out) - log_density
+    if len(losses) < config.fewest_runs:
+        return True
+    scatter = config.certainty * float(np.std(losses, ddof=1)) * np.sqrt(len(losses))
+    return not np.sum(losses) < scatter
+
+
+def _log_density_of_stretches(sets: CandidateSets, found: Fit, held_out: Recordings) -> Array:
+    """(K,) log density of held-out recordings in stretches as long as a free run [nats]."""
+    problem = sets.problem.with_recordings(held_out)
+    refitted = fit_latent_force_level(problem, found)
+    on = problem.program.effect_switches(refitted.effects)
+    passes = problem.filter(refitted.free, refitted.theta, on, refitted.levels).passes
+    parts = []
+    for mapped, one in zip(held_out, passes, strict=True):
+        stretch = ((mapped.times - mapped.times[0]) // problem.horizon).astype(int)
+        parts.append(np.bincount(stretch, one.log_density_of_rows))
+    return np.concatenate(parts)
 
 
 def generalizes_worse(sets: CandidateSets, before: Fit, after: Fit, held_out: Recordings) -> bool:

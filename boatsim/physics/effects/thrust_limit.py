@@ -137,3 +137,18 @@ DriveLimit = preset_effect(
         },
     },
 )
+
+
+ShaftLimit = preset_effect(
+    ThrustLimit,
+    "ShaftLimit",
+    words="the shaft rate is limited: large commands turn the shaft no faster than a part of it",
+    shown_by="runs at several shaft rates between half and full",
+    acts_on="shaft",
+    frees={
+        "share": {
+            "words": "limit of the shaft rate, as a share of the largest command; 1: no limit",
+            "in_per_cent": "the shaft turns at most at {share} of the largest command",
+        },
+    },
+)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param
+from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import DEEDS
 from boatsim.physics.param import UNSET
 
@@ -120,3 +120,19 @@ class ThrustWithVoltage(ChannelEffect):
                 "add one effect for each"
             )
         return {"nominal": next(iter(neutral.values()), 0.0)}
+
+
+ShaftWithVoltage = preset_effect(
+    ThrustWithVoltage,
+    "ShaftWithVoltage",
+    words="the shaft rate decreases with the voltage of the supply",
+    shown_by="the same shaft commands with a full and with an empty battery",
+    acts_on="shaft",
+    frees={
+        "exponent": {
+            "words": "k: power of the voltage, 1 for a motor without control of its revolutions; "
+            "0: the shaft rate does not depend on it",
+            "spread": 1.0,
+        },
+    },
+)

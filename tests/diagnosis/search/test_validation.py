@@ -9,6 +9,7 @@ from pushed_boat import laid, push, sail
 
 from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.fit import fit
+from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_latent_force_prior
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search import validation as asked
@@ -130,6 +131,58 @@ def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(we
     assert (
         refuted_effect(sets, wrong, [one], held_out) == "weak_reverse"
         and refuted_effect(sets, wrong, [one], []) == ""
+    )
+
+
+def test_a_loss_in_few_moments_leaves_the_decision_to_free_runs(
+    weak: Laid, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is clear from one stretch that loses much beside another that gains much, and an
+    effect that free runs are no worse with then stays. The same loss spread over all stretches
+    refutes it, because free runs are hardly better with it."""
+    problem, base, found, held_out = weak
+    sets = sets_of(problem, base, found)
+    one = compare_rivals("weak_reverse", found, base, {})
+    monkeypatch.setattr(
+        asked,
+        "predictive_log_likelihood",
+        lambda sets, f, recordings: 0.0 if f is base else -100.0,
+    )
+    better = {"position_rms_m": [1.0, 1.0]}
+    monkeypatch.setattr(
+        generalization,
+        "mean_square_errors",
+        lambda runs, name: {"position_rms_m": [1.03, 1.03]} if name else better,
+    )
+    few, all_alike = np.zeros(20), np.full(20, -5.0)
+    few[:2] = -190.0, 90.0
+
+    def losses(each: Array) -> None:
+        monkeypatch.setattr(
+            asked,
+            "_log_density_of_stretches",
+            lambda sets, f, recordings: np.zeros(20) if f is base else each,
+        )
+
+    losses(few)
+    assert few.sum() == all_alike.sum() and refuted_effect(sets, found, [one], held_out) == ""
+    losses(all_alike)
+    assert refuted_effect(sets, found, [one], held_out) == "weak_reverse"
+
+
+def test_the_log_density_of_stretches_adds_up_to_the_likelihood(weak: Laid) -> None:
+    """Both are known up to a constant, so that two models differ by the same."""
+    problem, base, found, held_out = weak
+    sets = sets_of(problem, base, found)
+    stretches = [asked._log_density_of_stretches(sets, f, held_out) for f in (found, base)]
+    by_likelihood = []
+    for f in (found, base):
+        likelihood = predictive_log_likelihood(sets, f, held_out)
+        levels = fit_latent_force_level(problem.with_recordings(held_out), f).levels
+        by_likelihood.append(likelihood - log_latent_force_prior(problem, levels))
+    assert len(stretches[0]) > 1
+    assert stretches[0].sum() - stretches[1].sum() == pytest.approx(
+        by_likelihood[0] - by_likelihood[1], rel=1e-6
     )
 
 

@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from driven_boats import driven, random_orders, ranked
 
+from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_limit import ROUNDED, limit_thrust
 
@@ -46,3 +48,34 @@ def test_full_command_is_the_limit_of_the_channels() -> None:
     limits = [boat.limits()[name] for name in boat.target_actuators(effect)]
     ahead, astern = max(high for _, high in limits), max(-low for low, _ in limits)
     assert effect.derived_parameters(boat) == {"full_ahead": ahead, "full_astern": astern}
+
+
+def test_it_is_a_candidate_for_thrusts_and_for_shafts() -> None:
+    thrusts, shafts = (candidate_library(vessel.load_vessel(n)) for n in ("trial_boat", "otter"))
+    assert {"thrust_limit"} == {"thrust_limit", "shaft_limit"} & set(thrusts.tested_names)
+    assert {"shaft_limit"} == {"thrust_limit", "shaft_limit"} & set(shafts.tested_names)
+
+
+SHAFTS = ("n_port_radps", "n_starboard_radps")
+RIVALS = ("shaft_limit", "shaft_deadband", "thrust_imbalance", "weak_reverse", "command_delay")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("share", "names"), [(0.5, ["shaft_limit"]), (1.0, [])])
+def test_a_limit_of_the_shaft_rate_is_found_with_its_size(share: float, names: list[str]) -> None:
+    """Recordings of an integrator that clips the orders sharply."""
+    boat = vessel.load_vessel("otter")
+    effect = vessel.load_vessel("otter", extra=[{"use": "shaft_limit"}]).effect("shaft_limit")
+    assert effect is not None
+    most = effect.derived_parameters(boat)
+    low, high = -share * most["full_astern"], share * most["full_ahead"]
+    recordings = []
+    for seed in (1, 2):
+        orders = random_orders(np.random.default_rng(seed), [most["full_ahead"]] * 2, 30, 10)
+        columns = dict(zip(SHAFTS, orders.T, strict=True))
+        recordings.append(driven(boat, columns, lambda x: np.clip(x, low, high), seed))
+    ranking = ranked(boat, RIVALS, *recordings)
+    assert [one.name for one in ranking.named] == names
+    if names:
+        value, sd = ranking.best.value("shaft_limit", "share")
+        assert abs(value - share) < max(4.0 * sd, 0.02)

@@ -117,6 +117,27 @@ def test_a_wrong_binding_is_refused(tmp_path: Path, wrong: str, message: str) ->
         with_battery(tmp_path, table)
 
 
+def test_shaft_rates_have_an_effect_of_their_own(tmp_path: Path) -> None:
+    """Half of the speed of the shaft is a quarter of the thrust, and of the first acceleration."""
+    otter = tmp_path / "otter"
+    shutil.copytree(content.content_root() / "models" / "otter", otter)
+    file = otter / "vessel.toml"
+    file.write_text(file.read_text() + BATTERY)
+    library = candidate_library(vessel.load_vessel(str(otter)))
+    assert "shaft_with_voltage" in library.tested_names
+    assert "thrust_with_voltage" in library.inapplicable
+    channels = ["n_port_radps", "n_starboard_radps"]
+    table = {"use": "shaft_with_voltage", "on": channels, "fed_by": ["battery_V"] * 2}
+    boat = vessel.load_vessel(str(otter), extra=[{**table, "exponent": 1.0}])
+    speeds = []
+    for volts in (24.0, 12.0):
+        changed = boat.with_measured({"battery_V": volts})
+        goal = [dict.fromkeys(channels, 60.0)]
+        case = boatsim.load_scenario("otter/turn", vessel=changed, duration=0.2, goal=goal)
+        speeds.append(boatsim.run(case).recording["u_mps"][-1])
+    assert speeds[1] / speeds[0] == pytest.approx(0.25, rel=0.05)
+
+
 # ---- boats from other integrators
 
 CHARGES = ((1.05, 0.97), (0.92, 0.86), (0.82, 0.78))  # at begin and end of each run
