@@ -212,3 +212,136 @@ def usual_loading() -> Loading:
     """Return the distribution of the mass that is assumed, without viscous damping of roll."""
     gyradii = (ROLL_GYRADIUS, PITCH_GYRADIUS, PITCH_GYRADIUS)
     return Loading(DRAUGHT - KEEL_TO_CENTRE, HEIGHT, gyradii)
+
+
+def moving_hull(hull: Hull, found: Coefficients, loading: Loading) -> MovingHull:
+    """Return the hull with its coefficients and its mass.
+
+    Args:
+        hull: The hull.
+        found: Its coefficients.
+        loading: Distribution of its mass.
+    """
+    return MovingHull(found, loading, hull.mesh, float(hull.rest.centre[0]))
+
+
+COEFFICIENTS = ("A33", "B33", "A55", "B55", "A44", "B44")
+
+
+def coefficients_without_units(moving: MovingHull, w: float) -> Array:
+    """Return added mass over the mass and damping sqrt(L / g) over it, in the order of `COEFFICIENTS`.
+
+    Those of pitch are divided by the square of the length, those of roll by that of the beam.
+
+    Args:
+        moving: The hull.
+        w: Frequency [rad/s], one of those of the coefficients.
+    """
+    added, damping = moving.coefficients(w)
+    mass, values = float(moving.body[0, 0]), []
+    for axis, lever in (("heave", 1.0), ("pitch", LENGTH), ("roll", BEAM)):
+        place = AXES.index(axis)
+        unit = mass * lever**2
+        values.append(float(added[place, place]) / unit)
+        values.append(float(damping[place, place]) * float(np.sqrt(LENGTH / GRAVITY)) / unit)
+    return np.array(values)
+
+
+# The three methods of `ship_speed`, and the last one with the moment of the diffraction at speed
+NAMES = (*METHODS, "diffraction")
+
+
+class Motion(NamedTuple):
+    """Motion in one wave, over the amplitude of the wave and over its slope."""
+
+    case: str
+    angle: float  # [deg] of the waves, 0 from ahead
+    ratio: float  # wavelength over the length
+    axis: str
+    measured: float
+    found: tuple[float, ...]  # by each of `NAMES`
+    measured_phase: float  # [deg]; nan if it is not compared
+    phase: tuple[float, ...]  # [deg] by each of `NAMES`, before the crest at the forward end
+
+
+def motions(moving: MovingHull, oblique: tuple[str, ...] = FOUR) -> list[Motion]:
+    """Return measured and computed motions of both cases.
+
+    Args:
+        moving: The hull.
+        oblique: Degrees of freedom that are not held in case 2.11.
+    """
+    rows = []
+    for wave, (_, heave, pitch, *phases) in zip(head_waves(), HEAD_MEASURED, strict=True):
+        measured = {"heave": (heave, phases[0]), "pitch": (pitch, phases[1])}
+        rows += _rows(moving, wave, UPRIGHT, "2.10", measured)
+    for wave, (_, heave, roll, pitch) in zip(oblique_waves(), OBLIQUE_MEASURED, strict=True):
+        measured = {"heave": (heave, np.nan), "roll": (roll, np.nan), "pitch": (pitch, np.nan)}
+        if np.isnan(roll):
+            del measured["roll"]
+        rows += _rows(moving, wave, oblique, "2.11", measured)
+    return rows
+
+
+def _rows(
+    moving: MovingHull,
+    wave: Wave,
+    free: tuple[str, ...],
+    case: str,
+    measured: dict[str, tuple[float, float]],
+) -> list[Motion]:
+    """Return the motions of the measured axes in one wave."""
+    ahead = LENGTH - moving.place
+    crest = np.exp(1j * wave.number * ahead * np.cos(wave.direction))
+    every = []
+    for name in NAMES:
+        last = name == NAMES[-1]
+        method = METHODS[-1] if last else name
+        every.append(moving.motion(wave, free, method, last) * crest)
+    rows = []
+    for axis, (value, phase) in measured.items():
+        # heave is measured upwards; pitch and roll by their slope
+        unit = -1.0 if axis == "heave" else 1.0 / wave.number
+        own = [complex(one[AXES.index(axis)]) * unit for one in every]
+        rows.append(
+            Motion(
+                case,
+                180.0 - float(np.degrees(wave.direction)),
+                wave.length / LENGTH,
+                axis,
+                value,
+                tuple(abs(one) for one in own),
+                phase,
+                tuple(float(np.degrees(np.angle(one))) for one in own),
+            )
+        )
+    return rows
+
+
+def chosen(rows: list[Motion], case: str, axis: str, resonant: bool = True) -> list[Motion]:
+    """Return the motions of one case and axis.
+
+    Args:
+        rows: Motions.
+        case: The case.
+        axis: The axis.
+        resonant: Whether only waves of `LONG` to `RESONANT` lengths count.
+    """
+    found = []
+    for row in rows:
+        near = LONG <= row.ratio <= RESONANT
+        if row.case == case and row.axis == axis and (near or not resonant):
+            found.append(row)
+    return found
+
+
+def errors(rows: list[Motion], method: int) -> tuple[int, float, float]:
+    """Return the number of errors up to `CLOSE`, their mean without sign, and the largest.
+
+    Args:
+        rows: Motions.
+        method: Place among `NAMES`.
+    """
+    found = np.array([row.found[method] / row.measured - 1.0 for row in rows])
+    sizes = np.abs(found)
+    return int(np.sum(sizes <= CLOSE)), float(sizes.mean()), float(found[np.argmax(sizes)])

@@ -104,21 +104,23 @@ class MovingHull:
     Attributes:
         found: Its coefficients about a point on the waterline above or below its mass centre.
         loading: Distribution of its mass.
+        place: Place of the mass centre in the mesh, along x [m].
         body: Mass matrix (6, 6).
         stiffness: Stiffness (6, 6).
     """
 
-    def __init__(self, found: Coefficients, loading: Loading, wet: Array) -> None:
+    def __init__(self, found: Coefficients, loading: Loading, wet: Array, place: float) -> None:
         """Prepare the matrices.
 
         Args:
             found: Coefficients with the frequencies and directions of the waves, and the
                 frequencies of encounter.
             loading: Distribution of the mass.
-            wet: Wetted triangles (N, 3, 3) of the mesh about the origin, as `undisturbed_heave`
-                takes them.
+            wet: Wetted triangles (N, 3, 3) [m] of the mesh, as `undisturbed_heave` takes them.
+            place: Place of the mass centre and of the centre of buoyancy in the mesh, along x [m].
         """
-        self.found, self.loading, self._wet = found, loading, wet
+        self.found, self.loading, self.place = found, loading, place
+        self._wet = wet - np.array([place, 0.0, 0.0])
         mass = found.density * found.volume
         inertia = mass * np.array(loading.gyradii) ** 2
         self.body = rigid_body(mass, (0.0, 0.0), inertia)
