@@ -229,9 +229,10 @@ COEFFICIENTS = ("A33", "B33", "A55", "B55", "A44", "B44")
 
 
 def coefficients_without_units(moving: MovingHull, w: float) -> Array:
-    """Return added mass over the mass and damping sqrt(L / g) over it, in the order of `COEFFICIENTS`.
+    """Return added mass over the mass and damping sqrt(L / g) over it (6,).
 
-    Those of pitch are divided by the square of the length, those of roll by that of the beam.
+    They are in the order of `COEFFICIENTS`. Those of pitch are divided by the square of the length,
+    those of roll by that of the beam.
 
     Args:
         moving: The hull.

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.particulars import GRAVITY
 from validation.waves import kcs
 
 ROLL_FREE = ("surge", "sway", "heave", "roll", "pitch")
@@ -56,7 +57,7 @@ def print_convergence(hulls: list[kcs.Hull], found: list[Coefficients]) -> None:
         for hull, own in zip(hulls, found, strict=True):
             moving = kcs.moving_hull(hull, own, kcs.usual_loading())
             values = kcs.coefficients_without_units(moving, wave.encounter)
-            number = wave.encounter * np.sqrt(kcs.LENGTH / kcs.GRAVITY)
+            number = wave.encounter * np.sqrt(kcs.LENGTH / GRAVITY)
             cells = "  ".join(f"{value:7.4f}" for value in values)
             print(f"{number:13.2f}  {len(hull.mesh):9d}  {cells}")
 
@@ -71,20 +72,14 @@ def print_motions(hull: kcs.Hull, found: Coefficients) -> None:
     usual = kcs.usual_loading()
     moving = kcs.moving_hull(hull, found, usual)
     rows = kcs.motions(moving)
-    print("\nKCS in regular waves at Fn 0.26 against model tests (workshop Tokyo 2015, cases 2.10")
-    print(
-        "and 2.11): heave over the amplitude, roll and pitch over the slope of the wave. Assumed:"
-    )
-    print(
-        "radii of gyration 0.25 L in pitch and 0.40 B in roll (SIMMAN; the workshop states none),"
-    )
-    print(
-        "mass centre above the centre of buoyancy, GM 0.6 m, free in heave and pitch (2.10) or in"
-    )
-    print("surge, heave, roll and pitch (2.11), no damping of roll but by radiated waves, position")
-    print("at rest. none: no effect of speed but the frequency of encounter; body: equations of")
-    print("motion in body axes; terms: with the terms of forward speed; diffr.: with the moment of")
-    print("the diffraction at speed too")
+    print("\nKCS in regular waves at Fn 0.26 against model tests (workshop Tokyo 2015, cases")
+    print("2.10 and 2.11): heave over the amplitude, roll and pitch over the slope of the wave.")
+    print("Assumed: radii of gyration 0.25 L in pitch and 0.40 B in roll (SIMMAN; the workshop")
+    print("states none), mass centre above the centre of buoyancy, GM 0.6 m, free in heave and")
+    print("pitch (2.10) or in surge, heave, roll and pitch (2.11), no damping of roll but by")
+    print("radiated waves, position as at rest. none: no effect of speed but the frequency of")
+    print("encounter; body: equations of motion in body axes; terms: with the terms of forward")
+    print("speed; diffr.: with the moment of the diffraction at speed too")
     print("case  angle  wave / L  axis   meas.  none          body          terms         diffr.")
     for row in rows:
         cells = []

@@ -6,6 +6,7 @@ Axes are SNAME's, about the mass centre of the hull.
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
 from boatsim.physics.base import AXES, Array
@@ -13,6 +14,7 @@ from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS, ROLL
 
+Complex = NDArray[np.complex128]
 SWAY, HEAVE, PITCH, YAW = (AXES.index(name) for name in ("sway", "heave", "pitch", "yaw"))
 
 
@@ -50,7 +52,7 @@ class Loading(NamedTuple):
 
 def radiated_force(
     added: Array, damping: Array, limit: Array, w: float, speed: float, method: str
-) -> Array:
+) -> Complex:
     """Return the force (6, 6) of the radiated waves per motion, with the opposite sign.
 
     Args:
@@ -152,7 +154,7 @@ class MovingHull:
     def _row(self, w: float) -> int:
         return int(np.argmin(np.abs(self.found.frequency - w)))
 
-    def excitation(self, wave: Wave, diffraction: bool = False) -> Array:
+    def excitation(self, wave: Wave, diffraction: bool = False) -> Complex:
         """Return the complex excitation (6,) per amplitude at zero speed [N/m, N].
 
         Args:
@@ -169,7 +171,7 @@ class MovingHull:
 
     def motion(
         self, wave: Wave, free: tuple[str, ...], method: str, diffraction: bool = False
-    ) -> Array:
+    ) -> Complex:
         """Return the complex motion (6,) of the mass centre per amplitude [m/m, rad/m].
 
         Args:
@@ -183,8 +185,8 @@ class MovingHull:
         limit = self._about_centre(self.found.infinite_added_mass)
         inertia = self.body[ROLL, ROLL] + added[ROLL, ROLL]
         critical = 2.0 * np.sqrt(self.stiffness[ROLL, ROLL] * inertia)
-        dynamic = self.stiffness - w * w * self.body
-        dynamic = dynamic + radiated_force(added, damping, limit, w, wave.speed, method)
+        radiated = radiated_force(added, damping, limit, w, wave.speed, method)
+        dynamic = self.stiffness - w * w * self.body + radiated
         dynamic[ROLL, ROLL] += 1j * w * self.loading.roll_damping * critical
         places = [AXES.index(axis) for axis in free]
         found = np.zeros(len(AXES), dtype=np.complex128)
