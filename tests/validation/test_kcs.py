@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
+from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.hydrodynamics.response import Ballast, floating_response
 from boatsim.physics.base import AXES
 from boatsim.physics.coefficients.files import read_coefficients
 from boatsim.physics.particulars import GRAVITY
 from validation.waves import kcs
+from validation.waves.hulls import write_obj
 from validation.waves.loft import Panels, Station, half_breadth_of, hydrostatics, loft, section_area
+from validation.waves.met_diffraction import Met, diffraction_forces
 from validation.waves.moving_hull import (
     Loading,
     MovingHull,
@@ -254,13 +257,44 @@ def test_held_axes_do_not_move_and_viscous_damping_makes_roll_smaller() -> None:
     assert second[[2, 4]] == pytest.approx(first[[2, 4]], rel=1e-9)
 
 
+def test_diffraction_at_the_frequency_of_the_wave_is_that_of_the_excitation(
+    tmp_path: Path,
+) -> None:
+    pytest.importorskip("capytaine")
+    pytest.importorskip("trimesh")
+    stations = wall_sided(40.0, 6.0, 21)
+    triangles = loft(stations, DRAUGHT, Panels(16, 4, 2))
+    path = tmp_path / "hull.obj"
+    write_obj(path, triangles, "hull")
+    mesh = HullMesh(path, DRAUGHT, origin=20.0, density=DENSITY)
+    wave = Wave(40.0, 0.75 * np.pi, 0.0)
+    still, met = diffraction_forces(mesh, [Met(wave.frequency, wave.frequency, wave.direction)])[0]
+    assert met == pytest.approx(still, rel=1e-9)
+    directions = [wave.direction]
+    rows = run_capytaine(mesh, [wave.frequency], directions, lambda stage, share: None)
+    found = coefficients_of_rows(rows, mesh, directions)
+    wet = triangles - np.array([20.0, 0.0, 0.0])
+    heave = found.excitation[0, 0, 2] - undisturbed_heave(wet, wave, DENSITY)
+    assert still[2] == pytest.approx(heave, rel=0.03)
+    faster = diffraction_forces(mesh, [Met(wave.frequency, 1.5 * wave.frequency, wave.direction)])[
+        0
+    ]
+    assert faster[0] == pytest.approx(still, rel=1e-9)
+    assert abs(faster[1][2] - still[2]) > 0.05 * abs(still[2])
+
+
 class Following:
     """A hull that follows the surface of a wave at its mass centre."""
 
     place = 100.0  # [m]
 
     def motion(
-        self, wave: Wave, free: tuple[str, ...], method: str, diffraction: bool = False
+        self,
+        wave: Wave,
+        free: tuple[str, ...],
+        method: str,
+        diffraction: bool = False,
+        change: np.ndarray | None = None,
     ) -> np.ndarray:
         """Heave down by the elevation, roll and pitch by its slopes."""
         found = np.zeros(6, dtype=np.complex128)
@@ -272,10 +306,10 @@ class Following:
 
 def test_hull_that_follows_the_surface_has_unit_motions_and_the_phase_of_the_wave() -> None:
     following: MovingHull = Following()  # type: ignore[assignment]
-    for row in kcs.motions(following):
+    for row in kcs.motions(following, [np.zeros(6, dtype=np.complex128)] * 10):
         angle = np.radians(row.angle)
         expected = {"heave": 1.0, "roll": abs(np.sin(angle)), "pitch": abs(np.cos(angle))}
-        assert row.found == pytest.approx([expected[row.axis]] * 4, abs=1e-9)
+        assert row.found == pytest.approx([expected[row.axis]] * 5, abs=1e-9)
         if row.case == "2.10":
             # the crest passes the forward perpendicular before the mass centre
             later = 360.0 / (row.ratio * kcs.LENGTH) * (kcs.LENGTH - Following.place)

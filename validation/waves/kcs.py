@@ -16,7 +16,8 @@ from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.hulls import write_obj
 from validation.waves.loft import Hydrostatics, Panels, Station, hydrostatics, loft, section_area
-from validation.waves.moving_hull import Loading, MovingHull, Wave
+from validation.waves.met_diffraction import Met, diffraction_forces
+from validation.waves.moving_hull import Complex, Loading, MovingHull, Wave
 from validation.waves.ship_speed import METHODS
 
 # Table of offsets, in github.com/lohith-g-45/Hydrohackathon at commit 0a99ce5b, folder
@@ -54,8 +55,9 @@ HEAD_MEASURED = (
     (8.321, 0.8743, 0.9646, -145.5, -105.7),
     (11.840, 0.9312, 1.1185, -98.6, -33.3),
 )
-# Case 2.11, waves as long as the model of 2.7 m at 1.34 m/s, free in surge, heave, roll and pitch:
-# angle of the waves [deg], 0 from ahead, heave over the amplitude, roll and pitch over the slope
+# Case 2.11, waves as long as the model of 2.7 m at 1.34 m/s, of which surge, heave, roll and pitch
+# are published; that sway and yaw were held is an assumption. Angle of the waves [deg], 0 from
+# ahead, heave over the amplitude, roll and pitch over the slope
 OBLIQUE_LENGTH, OBLIQUE_SPEED = 2.7, 1.34  # [m], [m/s]
 OBLIQUE_MEASURED = (
     (0.0, 0.54, np.nan, 0.43),
@@ -187,6 +189,36 @@ def oblique_waves() -> list[Wave]:
     return waves
 
 
+def hull_mesh(folder: Path, hull: Hull) -> HullMesh:
+    """Write the mesh of the hull and return it for the boundary element method.
+
+    Args:
+        folder: Working folder.
+        hull: The hull.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"kcs_{len(hull.mesh)}.obj"
+    write_obj(path, hull.mesh, "KCS below its waterline, z = 0 there")
+    return HullMesh(path, DRAUGHT, origin=float(hull.rest.centre[0]), density=DENSITY)
+
+
+def diffraction_changes(folder: Path, hull: Hull) -> list[Complex]:
+    """Return the change (6,) of the diffraction of each wave of both cases by its encounter.
+
+    Args:
+        folder: Working folder.
+        hull: The hull.
+
+    Raises:
+        BadInput: Capytaine is not installed.
+    """
+    waves = []
+    for wave in head_waves() + oblique_waves():
+        waves.append(Met(wave.frequency, wave.encounter, wave.direction))
+    forces = diffraction_forces(hull_mesh(folder, hull), waves)
+    return [met - still for still, met in forces]
+
+
 def compute(folder: Path, hull: Hull, waves: list[Wave]) -> Coefficients:
     """Return the coefficients of the hull at the frequencies of waves and of encounter.
 
@@ -198,10 +230,7 @@ def compute(folder: Path, hull: Hull, waves: list[Wave]) -> Coefficients:
     Raises:
         BadInput: Capytaine is not installed or fails.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"kcs_{len(hull.mesh)}.obj"
-    write_obj(path, hull.mesh, "KCS below its waterline, z = 0 there")
-    mesh = HullMesh(path, DRAUGHT, origin=float(hull.rest.centre[0]), density=DENSITY)
+    mesh = hull_mesh(folder, hull)
     frequencies = sorted({w for wave in waves for w in (wave.frequency, wave.encounter)})
     headings = sorted({wave.direction for wave in waves})
     rows = run_capytaine(mesh, frequencies, headings, lambda stage, share: None)
@@ -248,8 +277,9 @@ def coefficients_without_units(moving: MovingHull, w: float) -> Array:
     return np.array(values)
 
 
-# The three methods of `ship_speed`, and the last one with the moment of the diffraction at speed
-NAMES = (*METHODS, "diffraction")
+# The three methods of `ship_speed`; the last one with the moment of the diffraction at speed; and
+# this with the diffraction at the frequency of encounter
+NAMES = (*METHODS, "diffraction", "encounter")
 
 
 class Motion(NamedTuple):
@@ -265,40 +295,48 @@ class Motion(NamedTuple):
     phase: tuple[float, ...]  # [deg] by each of `NAMES`, before the crest at the forward end
 
 
-def motions(moving: MovingHull, oblique: tuple[str, ...] = FOUR) -> list[Motion]:
+def motions(
+    moving: MovingHull, changes: list[Complex], oblique: tuple[str, ...] = FOUR
+) -> list[Motion]:
     """Return measured and computed motions of both cases.
 
     Args:
         moving: The hull.
+        changes: Changes (6,) of the diffraction of each wave, of `diffraction_changes`.
         oblique: Degrees of freedom that are not held in case 2.11.
     """
-    rows = []
+    rows, number = [], 0
     for wave, (_, heave, pitch, *phases) in zip(head_waves(), HEAD_MEASURED, strict=True):
         measured = {"heave": (heave, phases[0]), "pitch": (pitch, phases[1])}
-        rows += _rows(moving, wave, UPRIGHT, "2.10", measured)
+        every = _every_method(moving, wave, UPRIGHT, changes[number])
+        rows += _rows("2.10", wave, every, measured)
+        number += 1
     for wave, (_, heave, roll, pitch) in zip(oblique_waves(), OBLIQUE_MEASURED, strict=True):
         measured = {"heave": (heave, np.nan), "roll": (roll, np.nan), "pitch": (pitch, np.nan)}
         if np.isnan(roll):
             del measured["roll"]
-        rows += _rows(moving, wave, oblique, "2.11", measured)
+        every = _every_method(moving, wave, oblique, changes[number])
+        rows += _rows("2.11", wave, every, measured)
+        number += 1
     return rows
 
 
-def _rows(
-    moving: MovingHull,
-    wave: Wave,
-    free: tuple[str, ...],
-    case: str,
-    measured: dict[str, tuple[float, float]],
-) -> list[Motion]:
-    """Return the motions of the measured axes in one wave."""
+def _every_method(
+    moving: MovingHull, wave: Wave, free: tuple[str, ...], change: Complex
+) -> list[Complex]:
+    """Return the motions (6,) by each of `NAMES`, after the crest at the forward perpendicular."""
     ahead = LENGTH - moving.place
     crest = np.exp(1j * wave.number * ahead * np.cos(wave.direction))
-    every = []
-    for name in NAMES:
-        last = name == NAMES[-1]
-        method = METHODS[-1] if last else name
-        every.append(moving.motion(wave, free, method, last) * crest)
+    every = [moving.motion(wave, free, method) for method in METHODS]
+    every.append(moving.motion(wave, free, METHODS[-1], True))
+    every.append(moving.motion(wave, free, METHODS[-1], True, change))
+    return [one * crest for one in every]
+
+
+def _rows(
+    case: str, wave: Wave, every: list[Complex], measured: dict[str, tuple[float, float]]
+) -> list[Motion]:
+    """Return the motions of the measured axes in one wave."""
     rows = []
     for axis, (value, phase) in measured.items():
         # heave is measured upwards; pitch and roll by their slope
@@ -317,6 +355,23 @@ def _rows(
             )
         )
     return rows
+
+
+class Computed(NamedTuple):
+    """The ship with its coefficients and the changes of the diffraction by the encounter."""
+
+    hull: Hull
+    found: Coefficients
+    changes: list[Complex]
+
+    def motions(self, loading: Loading, oblique: tuple[str, ...] = FOUR) -> list[Motion]:
+        """Return measured and computed motions of both cases.
+
+        Args:
+            loading: Distribution of the mass.
+            oblique: Degrees of freedom that are not held in case 2.11.
+        """
+        return motions(moving_hull(self.hull, self.found, loading), self.changes, oblique)
 
 
 def chosen(rows: list[Motion], case: str, axis: str, resonant: bool = True) -> list[Motion]:

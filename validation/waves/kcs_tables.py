@@ -40,7 +40,8 @@ def print_ship(folder: Path, work: Path, has_capytaine: bool) -> None:
     waves = kcs.head_waves() + kcs.oblique_waves()
     found = [kcs.compute(work, hull, waves) for hull in hulls]
     print_convergence(hulls, found)
-    print_motions(hulls[-1], found[-1])
+    changes = kcs.diffraction_changes(work, hulls[-1])
+    print_motions(kcs.Computed(hulls[-1], found[-1], changes))
 
 
 def print_convergence(hulls: list[kcs.Hull], found: list[Coefficients]) -> None:
@@ -62,16 +63,13 @@ def print_convergence(hulls: list[kcs.Hull], found: list[Coefficients]) -> None:
             print(f"{number:13.2f}  {len(hull.mesh):9d}  {cells}")
 
 
-def print_motions(hull: kcs.Hull, found: Coefficients) -> None:
+def print_motions(ship: kcs.Computed) -> None:
     """Print motions next to measured ones, and what assumptions change.
 
     Args:
-        hull: The hull.
-        found: Its coefficients.
+        ship: The ship.
     """
-    usual = kcs.usual_loading()
-    moving = kcs.moving_hull(hull, found, usual)
-    rows = kcs.motions(moving)
+    rows = ship.motions(kcs.usual_loading())
     print("\nKCS in regular waves at Fn 0.26 against model tests (workshop Tokyo 2015, cases")
     print("2.10 and 2.11): heave over the amplitude, roll and pitch over the slope of the wave.")
     print("Assumed: radii of gyration 0.25 L in pitch and 0.40 B in roll (SIMMAN; the workshop")
@@ -79,8 +77,14 @@ def print_motions(hull: kcs.Hull, found: Coefficients) -> None:
     print("pitch (2.10) or in surge, heave, roll and pitch (2.11), no damping of roll but by")
     print("radiated waves, position as at rest. none: no effect of speed but the frequency of")
     print("encounter; body: equations of motion in body axes; terms: with the terms of forward")
-    print("speed; diffr.: with the moment of the diffraction at speed too")
-    print("case  angle  wave / L  axis   meas.  none          body          terms         diffr.")
+    print(
+        "speed; diffr.: with the moment of the diffraction at speed too; met: as diffr., with the"
+    )
+    print("diffraction at the frequency of encounter")
+    print(
+        "case  angle  wave / L  axis   meas.  none          body          terms         "
+        "diffr.        met"
+    )
     for row in rows:
         cells = []
         for value in row.found:
@@ -88,17 +92,17 @@ def print_motions(hull: kcs.Hull, found: Coefficients) -> None:
         start = f"{row.case}  {row.angle:5.0f}  {row.ratio:8.2f}  {row.axis:5}"
         print(f"{start}  {row.measured:5.3f}  {'  '.join(cells)}")
     print("phase before the crest at the forward perpendicular [deg], heave up and pitch bow up")
-    print("wave / L  axis   measured  none  body  terms  diffr.")
+    print("wave / L  axis   measured  none  body  terms  diffr.   met")
     for row in rows:
         if not np.isnan(row.measured_phase):
-            none, body, terms, last = row.phase
+            none, body, terms, last, met = row.phase
             print(
                 f"{row.ratio:8.2f}  {row.axis:5}  {row.measured_phase:8.0f}  {none:4.0f}"
-                f"  {body:4.0f}  {terms:5.0f}  {last:6.0f}"
+                f"  {body:4.0f}  {terms:5.0f}  {last:6.0f}  {met:4.0f}"
             )
     print_errors(rows)
-    print_gyradius(hull, found, rows)
-    print_roll(hull, found, rows)
+    print_gyradius(ship, rows)
+    print_roll(ship, rows)
 
 
 def print_errors(rows: list[kcs.Motion]) -> None:
@@ -108,7 +112,9 @@ def print_errors(rows: list[kcs.Motion]) -> None:
         rows: Motions.
     """
     print("number of waves of 1 to 2 lengths with errors up to 10 %, mean and largest error")
-    print("case  axis   none              body              terms             diffr.")
+    print(
+        "case  axis   none              body              terms             diffr.            met"
+    )
     for case, axes in (("2.10", ("heave", "pitch")), ("2.11", ("heave", "roll", "pitch"))):
         for axis in axes:
             own = kcs.chosen(rows, case, axis)
@@ -119,12 +125,11 @@ def print_errors(rows: list[kcs.Motion]) -> None:
             print(f"{case}  {axis:5}  {' '.join(cells)}")
 
 
-def print_gyradius(hull: kcs.Hull, found: Coefficients, rows: list[kcs.Motion]) -> None:
+def print_gyradius(ship: kcs.Computed, rows: list[kcs.Motion]) -> None:
     """Print how the assumed radius of gyration in pitch changes the motions in head waves.
 
     Args:
-        hull: The hull.
-        found: Its coefficients.
+        ship: The ship.
         rows: Motions with the usual radius.
     """
     print("change of heave and pitch (terms) in head waves by the radius of gyration in pitch [%]")
@@ -133,7 +138,7 @@ def print_gyradius(hull: kcs.Hull, found: Coefficients, rows: list[kcs.Motion]) 
     for step in (-kcs.GYRADIUS_STEP, kcs.GYRADIUS_STEP):
         roll, pitch, yaw = usual.gyradii
         loading = usual._replace(gyradii=(roll, pitch + step, yaw + step))
-        changed.append(kcs.motions(kcs.moving_hull(hull, found, loading)))
+        changed.append(ship.motions(loading))
     terms = kcs.NAMES.index("forward speed")
     for row, *others in zip(rows, *changed, strict=True):
         if row.case == "2.10":
@@ -147,12 +152,11 @@ def print_gyradius(hull: kcs.Hull, found: Coefficients, rows: list[kcs.Motion]) 
         print(f"{words}: within 10 % in waves of 1 to 2 L, {', '.join(counts)}")
 
 
-def print_roll(hull: kcs.Hull, found: Coefficients, rows: list[kcs.Motion]) -> None:
+def print_roll(ship: kcs.Computed, rows: list[kcs.Motion]) -> None:
     """Print how assumptions of the restraint and of viscous damping change the roll.
 
     Args:
-        hull: The hull.
-        found: Its coefficients.
+        ship: The ship.
         rows: Motions with sway held and without viscous damping.
     """
     print(f"roll by assumption; damped: {100 * kcs.ROLL_STEP:.0f} % of the critical damping more;")
@@ -162,8 +166,8 @@ def print_roll(hull: kcs.Hull, found: Coefficients, rows: list[kcs.Motion]) -> N
     narrow = (0.9 * usual.gyradii[0], *usual.gyradii[1:])
     cases = [rows]
     for loading in (usual._replace(roll_damping=kcs.ROLL_STEP), usual._replace(gyradii=narrow)):
-        cases.append(kcs.motions(kcs.moving_hull(hull, found, loading)))
-    cases.append(kcs.motions(kcs.moving_hull(hull, found, usual), ROLL_FREE))
+        cases.append(ship.motions(loading))
+    cases.append(ship.motions(usual, ROLL_FREE))
     last = kcs.NAMES.index("diffraction")
     for row, *others in zip(*cases, strict=True):
         if row.axis == "roll":

@@ -154,15 +154,21 @@ class MovingHull:
     def _row(self, w: float) -> int:
         return int(np.argmin(np.abs(self.found.frequency - w)))
 
-    def excitation(self, wave: Wave, diffraction: bool = False) -> Complex:
+    def excitation(
+        self, wave: Wave, diffraction: bool = False, change: Complex | None = None
+    ) -> Complex:
         """Return the complex excitation (6,) per amplitude at zero speed [N/m, N].
 
         Args:
             wave: The wave.
             diffraction: Whether it contains the moment in pitch of the diffraction at speed.
+            change: Change of the diffraction (6,) about the waterline, by the frequency of
+                encounter; None without it.
         """
         column = int(np.argmin(np.abs(self.found.heading - wave.direction)))
         own = self.found.excitation[self._row(wave.frequency), column]
+        if change is not None:
+            own = own + change
         force = self._lever().T @ own
         if diffraction:
             scattered = force[HEAVE] - undisturbed_heave(self._wet, wave, self.found.density)
@@ -170,7 +176,12 @@ class MovingHull:
         return np.asarray(force)
 
     def motion(
-        self, wave: Wave, free: tuple[str, ...], method: str, diffraction: bool = False
+        self,
+        wave: Wave,
+        free: tuple[str, ...],
+        method: str,
+        diffraction: bool = False,
+        change: Complex | None = None,
     ) -> Complex:
         """Return the complex motion (6,) of the mass centre per amplitude [m/m, rad/m].
 
@@ -179,6 +190,7 @@ class MovingHull:
             free: Degrees of freedom that are not held.
             method: One of `ship_speed.METHODS`.
             diffraction: Whether the excitation contains the moment of the diffraction at speed.
+            change: Change of the diffraction (6,), as `excitation` takes it.
         """
         w = wave.encounter
         added, damping = self.coefficients(w)
@@ -190,6 +202,6 @@ class MovingHull:
         dynamic[ROLL, ROLL] += 1j * w * self.loading.roll_damping * critical
         places = [AXES.index(axis) for axis in free]
         found = np.zeros(len(AXES), dtype=np.complex128)
-        force = self.excitation(wave, diffraction)[places]
+        force = self.excitation(wave, diffraction, change)[places]
         found[places] = np.linalg.solve(dynamic[np.ix_(places, places)], force)
         return found
