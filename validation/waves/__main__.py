@@ -25,6 +25,7 @@ from validation.waves import (
     wigley_pitch,
     wigley_speed,
 )
+from validation.waves.slow_table import SlowTable
 
 WORK = Path("out/validation/waves")
 STRONG = 0.3  # reflection above which the error of the drift is counted; below the drift is small
@@ -336,6 +337,39 @@ def print_ship_motions(navaltoolbox: Path) -> None:
         start = f"{gyradius / dtmb5415.MODEL_LENGTH:6.2f} L"
         for line in ship_error_lines(own_rows):
             print(f"{start}  {line}")
+    print_met_diffraction(navaltoolbox, table)
+
+
+def print_met_diffraction(navaltoolbox: Path, table: SlowTable) -> None:
+    """Print motions of a ship's model with the diffraction at the frequency of encounter.
+
+    Args:
+        navaltoolbox: Folder of navaltoolbox-lib.
+        table: The model.
+    """
+    rows = dtmb5415.met_motions(navaltoolbox, table)
+    print(
+        "the same waves of 1 to 2 L with the terms of forward speed; met: with the diffraction at"
+    )
+    print(
+        "the frequency of encounter, which strip theory takes; moment: with its moment at speed too"
+    )
+    print("  Fn  wave / L  heave  terms  met    moment    pitch  terms  met    moment")
+    for row in rows:
+        text = []
+        for place, measured in enumerate(row.measured):
+            cells = [f"{pair[place]:.3f}" for pair in row.found]
+            text.append(f"{measured:.3f}  {'  '.join(cells)}")
+        print(f"{row.froude:4.2f}  {row.ratio:8.2f}  {'     '.join(text)}")
+    for method, name in enumerate(dtmb5415.MET_NAMES):
+        words = []
+        for place, axis in enumerate(("heave", "pitch")):
+            one = dtmb5415.errors(rows, place, method, np.inf)
+            words.append(
+                f"{axis} {one.within} of {one.waves} within 10 %, mean {100 * one.mean:.0f} %, "
+                f"largest {100 * one.largest:+.0f} %"
+            )
+        print(f"{name:11}  {'; '.join(words)}")
 
 
 def ship_error_lines(rows: list[dtmb5415.Motion]) -> list[str]:

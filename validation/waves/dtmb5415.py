@@ -18,6 +18,7 @@ from boatsim.physics.hull.floating import LoadedHull, metacentric_heights, right
 from boatsim.physics.hull.mesh import ClosedMesh, read_closed_mesh
 from boatsim.physics.hull.submerged import submerged_part, wetted_triangles
 from boatsim.physics.particulars import GRAVITY
+from validation.waves.met_diffraction import Met, diffraction_forces
 from validation.waves.ship_speed import METHODS
 from validation.waves.slow_table import SlowTable, Wave
 
@@ -201,6 +202,22 @@ def upright(hull: LoadedHull) -> tuple[float, float]:
     return volume, metacentric_heights(hull, at_rest)[0]
 
 
+def model_mesh(folder: Path) -> HullMesh:
+    """Return the model for the boundary element method, about a point above its mass centre.
+
+    Args:
+        folder: Folder of the repository of NavalToolbox.
+    """
+    return HullMesh(
+        folder / MESH,
+        (DRAUGHT + DOME) * SCALE,
+        origin=(LENGTH - CENTRE) * SCALE,
+        scale=SCALE,
+        density=FRESH,
+        depth=TANK_DEPTH,
+    )
+
+
 def compute(folder: Path) -> Coefficients:
     """Return the coefficients of the model in head waves, about a point above its mass centre.
 
@@ -210,14 +227,7 @@ def compute(folder: Path) -> Coefficients:
     Raises:
         BadInput: Capytaine is not installed, or the mesh cannot be read.
     """
-    mesh = HullMesh(
-        folder / MESH,
-        (DRAUGHT + DOME) * SCALE,
-        origin=(LENGTH - CENTRE) * SCALE,
-        scale=SCALE,
-        density=FRESH,
-        depth=TANK_DEPTH,
-    )
+    mesh = model_mesh(folder)
     frequencies = [float(w) for w in np.linspace(LOWEST, HIGHEST, NUMBER)]
     rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
     return coefficients_of_rows(rows, mesh, [HEAD])
@@ -364,6 +374,44 @@ def motions(table: SlowTable) -> list[Motion]:
             pair = (measured[0], measured[1])
             rows.append(Motion(froude, hertz, ratio, pair, tuple(found)))
     return rows
+
+
+# The terms of forward speed with the diffraction at the frequency of the wave and at that of
+# encounter, and the latter with its moment at speed
+MET_NAMES = ("terms", "met", "met, moment")
+
+
+def met_motions(folder: Path, table: SlowTable) -> list[Motion]:
+    """Return measured and computed motions at speed near resonance, by each of `MET_NAMES`.
+
+    Args:
+        folder: Folder of the repository of NavalToolbox.
+        table: The model.
+
+    Raises:
+        BadInput: Capytaine is not installed.
+    """
+    waves, rows = [], []
+    for froude, points in MEASURED.items():
+        speed = froude * float(np.sqrt(GRAVITY * MODEL_LENGTH))
+        for hertz, *measured in points:
+            wave = met_wave(2.0 * np.pi * hertz, speed)
+            ratio = 2.0 * np.pi / wave.number / MODEL_LENGTH
+            if froude > 0.0 and LONG <= ratio <= RESONANT:
+                waves.append(wave)
+                rows.append(Motion(froude, hertz, ratio, (measured[0], measured[1]), ()))
+    met = [Met(wave.frequency, wave.encounter, HEAD) for wave in waves]
+    forces = diffraction_forces(model_mesh(folder), met)[:, :, [2, 4]]  # heave and pitch
+    found = []
+    for row, wave, (at_rest, own) in zip(rows, waves, forces, strict=True):
+        force = table.excitation(wave)
+        moment = -wave.speed / (1j * wave.encounter) * own[0]
+        changed = force + own - at_rest
+        pairs = []
+        for one in (force, changed, changed + np.array([0.0, moment])):
+            pairs.append(_over_slope(table.forced(wave, METHODS[-1], one), wave))
+        found.append(row._replace(found=tuple(pairs)))
+    return found
 
 
 def _with_damping_at_rest(table: SlowTable, wave: Wave) -> Array:

@@ -52,6 +52,7 @@ def diffraction_forces(hull: HullMesh, waves: Sequence[Met]) -> NDArray[np.compl
         "panel": hull.panel,
         "most_panels": MOST_PANELS,
     }
+    capytaine.set_logging("ERROR")
     body = capytaine_worker.floating_body(request)
     solver = capytaine.BEMSolver(method="direct")
     water: dict[str, Any] = {"water_depth": np.inf, "rho": hull.density, "g": GRAVITY}
