@@ -34,6 +34,7 @@ from validation.calibration.bodies.four_thrusters import four_thrusters
 from validation.calibration.bodies.guided_section import guided_section
 from validation.calibration.bodies.hovercraft import hovercraft
 from validation.calibration.bodies.kept_place import kept_place
+from validation.calibration.bodies.turning_drives import turning_drives
 from validation.calibration.table import share
 
 CALIBRATION = 0.03  # relative sd of damping and thrust about the vessel file
@@ -47,6 +48,7 @@ BODIES = {
         kept_place,
         clipped_orders,
         driven_pendulum,
+        turning_drives,
     )
 }
 
