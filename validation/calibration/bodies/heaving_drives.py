@@ -30,10 +30,9 @@ def heaving_drives() -> Body:
     waterplane, trimming = 981.0, 150.0  # c [N/m] of 0.1 m^2, g [N m/rad]
     times = np.arange(0.0, 40.0, 0.05)
     noise = {"position_sd_m": 2e-3, "heave_sd_m": 1e-3, "pitch_sd_rad": 2e-3}
-    noise |= {"speed_sd_mps": 0.01, "heave_velocity_sd_mps": 0.01, "pitch_rate_sd_radps": 0.01}
+    noise |= {"speed_sd_mps": 0.01, "heave_rate_sd_mps": 0.01, "pitch_rate_sd_radps": 0.01}
     on = {"elevation": "wave_in_m"}
     wave = {"use": "wave_excitation", "on": on, "bandwidth": BANDWIDTH}
-    moments = {"roll_elevation": 0.0, "roll_rate": 0.0, "roll_acceleration": 0.0}
     vessel = Vessel.from_effects(
         name="trial_heaving_drives",
         dof=AXES,
@@ -89,7 +88,7 @@ def heaving_drives() -> Body:
 
         states = integrate(rates, np.zeros(7), times)
         wave = elevation(times, states[:, 0])
-        states = states[:, :6] + rng.standard_normal((len(times), 6)) * list(noise.values())
+        states = states[:, :6] + rng.standard_normal((len(times), 6)) * [0.002, 0.001, 0.002, 0.01, 0.01, 0.01]
         names = ("x_m", "z_m", "theta_rad", "u_mps", "w_mps", "q_radps")
         signals = dict(zip(names, states.T, strict=True)) | {"wave_in_m": wave}
         return signals | {f"{name}_N": commands[:, i] for i, name in enumerate(DRIVES)}
