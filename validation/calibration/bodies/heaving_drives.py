@@ -31,8 +31,7 @@ def heaving_drives() -> Body:
     times = np.arange(0.0, 40.0, 0.05)
     noise = {"position_sd_m": 2e-3, "heave_sd_m": 1e-3, "pitch_sd_rad": 2e-3}
     noise |= {"speed_sd_mps": 0.01, "heave_rate_sd_mps": 0.01, "pitch_rate_sd_radps": 0.01}
-    on = {"elevation": "wave_in_m"}
-    wave = {"use": "wave_excitation", "on": on, "bandwidth": BANDWIDTH}
+    wave = {"on": {"elevation": "wave_in_m"}, "bandwidth": BANDWIDTH}
     vessel = Vessel.from_effects(
         name="trial_heaving_drives",
         dof=AXES,
@@ -49,7 +48,7 @@ def heaving_drives() -> Body:
             {"use": "added_mass", "sway": 0.0, "yaw": 0.0, **dict(zip(AXES, added, strict=True))},
             {"use": "linear_damping", **dict(zip(AXES, damping, strict=True))},
             {"use": "hydrostatics", "heave": waterplane, "pitch": trimming},
-            {**wave, "heave_elevation": -waterplane},
+            {"use": "wave_excitation", **wave, "heave_elevation": -waterplane},
             *deep_thrusters(),
         ],
         channels={f"{name}_N": {"low": -ASTERN, "high": AHEAD} for name in DRIVES},
@@ -58,7 +57,6 @@ def heaving_drives() -> Body:
             "facts": {"guided": True, "indoors": True},
             "rate": 20.0,
             "reasons": {"rate": "waves"},
-            "also": [{**wave, "name": "other_wave_excitation"}, {"use": "wave_drift", "on": on}],
         },
     )
     M = np.array([mass, mass, inertia]) + added

@@ -19,6 +19,7 @@ SPEED, SHAFT = 1.0, 10.0  # [m/s], [1/s] of the approach
 SLOWEST, FASTEST = 7.0, 12.0  # [1/s] shaft rates of a run
 HELM = 0.5  # [rad] to either side
 SWAY, YAW = -20.0, 30.0  # [N/rad], [N m/rad] of the rudder, 1.5 m behind the middle
+FAN = 5.0  # [N] full thrust of the fan, a fifth of the resistance
 
 
 def rudder_ship() -> Body:
@@ -46,10 +47,12 @@ def rudder_ship() -> Body:
             {"use": "linear_damping", "sway": damping[1], "yaw": damping[2]},
             {"use": "approach_balance", "on": {"shaft": "shaft_rps"}, **approach},
             {"use": "rudder", "on": {"angle": "helm_rad"}, "sway": SWAY, "yaw": YAW},
+            {"use": "thruster", "name": "fan", "on": {"thrust": "fan_N"}},
         ],
         channels={
             "helm_rad": {"low": -HELM, "high": HELM},
             "shaft_rps": {"low": 0.0, "high": 15.0},
+            "fan_N": {"low": 0.0, "high": FAN},
         },
         diagnosis={"facts": {"indoors": True, "position_fix": "tracking"}},
     )
@@ -58,8 +61,10 @@ def rudder_ship() -> Body:
     def run(rng: Rng, factors: Array) -> dict[str, Array]:
         helm = steps(rng, times, 5.0, -HELM, HELM, 1)[:, 0]
         shaft = steps(rng, times, 15.0, SLOWEST, FASTEST, 1)[:, 0]
+        fan = steps(rng, times, 10.0, 0.0, FAN, 1)[:, 0]
         forces = ambient(rng, times, mass, length, (1.0, 1.0, LEVER * length))
         forces[:, 0] += factors[3] * damping[0] * factors[0] * SPEED * shaft / SHAFT
+        forces[:, 0] += factors[5] * fan
         forces[:, 1] += factors[4] * SWAY * helm
         forces[:, 2] += factors[4] * YAW * helm
 
@@ -70,6 +75,6 @@ def rudder_ship() -> Body:
         states = integrate(rates, start, times)
         states += rng.standard_normal(states.shape) * [0.02, 0.02, 0.01, 0.0, 0.0, 0.005]
         signals = dict(zip(POSE, states[:, :3].T, strict=True)) | {"r_radps": states[:, 5]}
-        return signals | {"helm_rad": helm, "shaft_rps": shaft}
+        return signals | {"helm_rad": helm, "shaft_rps": shaft, "fan_N": fan}
 
-    return Body(vessel, times, noise, run, 5)
+    return Body(vessel, times, noise, run, 6)
