@@ -118,7 +118,9 @@ def boat_rates(state: Array, force: Array, inertia: Array, damping: Array) -> Ar
     return np.array([u * c - v * k, u * k + v * c, r, *speeds])
 
 
-def pilot_force(asked: Array, state: Array, haste: Sequence[float], brake: Sequence[float]) -> Array:
+def pilot_force(
+    asked: Array, state: Array, haste: Sequence[float], brake: Sequence[float]
+) -> Array:
     """Return the force and moment (3,) in body axes by which a pilot goes to a pose.
 
     Args:

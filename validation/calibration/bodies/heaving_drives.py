@@ -86,7 +86,14 @@ def heaving_drives() -> Body:
 
         states = integrate(rates, np.zeros(7), times)
         wave = elevation(times, states[:, 0])
-        states = states[:, :6] + rng.standard_normal((len(times), 6)) * [0.002, 0.001, 0.002, 0.01, 0.01, 0.01]
+        states = states[:, :6] + rng.standard_normal((len(times), 6)) * [
+            0.002,
+            0.001,
+            0.002,
+            0.01,
+            0.01,
+            0.01,
+        ]
         names = ("x_m", "z_m", "theta_rad", "u_mps", "w_mps", "q_radps")
         signals = dict(zip(names, states.T, strict=True)) | {"wave_in_m": wave}
         return signals | {f"{name}_N": commands[:, i] for i, name in enumerate(DRIVES)}
@@ -98,5 +105,7 @@ def deep_thrusters() -> list[dict[str, object]]:
     """Return the tables of the drives."""
     found: list[dict[str, object]] = []
     for name, (x, z) in DRIVES.items():
-        found.append({"use": "thruster", "name": name, "on": {"thrust": f"{name}_N"}, "x": x, "z": z})
+        found.append(
+            {"use": "thruster", "name": name, "on": {"thrust": f"{name}_N"}, "x": x, "z": z}
+        )
     return found

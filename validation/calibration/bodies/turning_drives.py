@@ -1,6 +1,6 @@
 """A boat with three drives that turn, in a basin of known depth with a measured current."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -50,7 +50,7 @@ def turning_drives() -> Body:
     damping = np.array([12.0, 40.0, 6.0])
     times = np.arange(0.0, 100.0, 0.2)
     noise = {"position_sd_m": 0.005, "heading_sd_rad": 0.005}
-    channels: dict[str, object] = {}
+    channels: dict[str, Mapping[str, object]] = {}
     measured: dict[str, object] = {"water_north_mps": {}, "water_east_mps": {}}
     for name in DRIVES:
         channels[f"{name}_N"] = {"low": -ASTERN, "high": AHEAD}
@@ -66,7 +66,10 @@ def turning_drives() -> Body:
         effects=[
             {"use": "added_mass", "surge": added[0], "sway": added[1], "yaw": added[2]},
             {"use": "linear_damping", **dict(zip(("surge", "sway", "yaw"), damping, strict=True))},
-            {"use": "measured_current", "on": {"north": "water_north_mps", "east": "water_east_mps"}},
+            {
+                "use": "measured_current",
+                "on": {"north": "water_north_mps", "east": "water_east_mps"},
+            },
             *steered_thrusters(),
         ],
         channels=channels,
