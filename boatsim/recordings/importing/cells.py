@@ -51,17 +51,18 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         cells: Texts of the column (N,).
         separator: Separator of the table, with which a decimal comma can be told from a separator.
     """
-    try:
-        return Cells(np.array(list(map(_plain_number, cells))))
-    except ValueError:
-        pass
     texts, remarks = cells, []
-    for mark in (",", "."):
+    marks = "," if separator == "," else ",."
+    for mark in marks:
         if separates_thousands(cells, mark):
             texts = [cell.replace(mark, "") for cell in cells]
             first = next(i for i, cell in enumerate(cells) if mark in cell)
             shown = f"{cells[first].strip()!r} = {texts[first].strip()}"
             remarks.append((f"{mark!r} separates thousands, first in {shown}", first))
+    try:
+        return Cells(np.array(list(map(_plain_number, texts))), remarks=tuple(remarks))
+    except ValueError:
+        pass
     if separator == "," and texts is cells:
         texts = _with_decimal_points(cells)
     found = np.full(len(cells), np.nan)

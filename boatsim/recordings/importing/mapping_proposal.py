@@ -26,6 +26,7 @@ from boatsim.recordings.importing.several_logs import (
     files_with_unrelated_clocks,
 )
 from boatsim.recordings.importing.signal_classification import (
+    FROM_EAST,
     HELM,
     ORDERED,
     PULSE,
@@ -41,11 +42,11 @@ from boatsim.recordings.importing.signal_classification import (
 from boatsim.recordings.importing.single_axis import is_load_of_channel, names_load
 from boatsim.recordings.importing.track import (
     Track,
-    rate_in_degrees,
     reason_not_measured,
     reason_poses_unusable,
     speed_unit,
     track_of,
+    unit_of_rate,
     values_in_si,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
@@ -257,11 +258,10 @@ def _with_rate_unit(
         return dict(best)
     heading, rates = best["psi_rad"][0], []
     for g in best.get("r_radps", []):
-        in_degrees = rate_in_degrees(g, heading) if g.why.endswith(BY_ITS_RANGE) else None
-        if in_degrees is True:
-            g = replace(g, word="degps", why="degrees by the changes of the heading")
-        elif in_degrees is False:
-            g = replace(g, word="", why="radians by the changes of the heading")
+        unit = unit_of_rate(g, heading) if g.why.endswith(BY_ITS_RANGE) else None
+        if unit is not None:
+            name = {"degps": "degrees", "": "radians", "degpmin": "degrees per minute"}[unit]
+            g = replace(g, word=unit, why=f"{name} by the changes of the heading")
         rates.append(g)
     kept = dict(best)
     if rates:
@@ -376,6 +376,8 @@ def _motion_lines(
             quarter = QUARTER_TURN
         elif not enu and has_opposite_sense(column, g.tokens):
             sign = "-"
+            if column == "psi_rad" and g.tokens & FROM_EAST:
+                quarter = QUARTER_TURN
         expression = toml_value(sign + _expression(g) + quarter)
         line = f"{column} = {expression}{_comment(g, best[source])}"
         if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _is_constant(g)):

@@ -84,6 +84,9 @@ POSE_WORDS = {
 # words in the name of a signal whose positive sense is the opposite of that of recordings
 TO_PORT = {"left", "port"}
 COUNTERCLOCKWISE = {"ccw", "counterclockwise", "anticlockwise"}
+FROM_EAST = {"enu"}  # x east, y north, angles counterclockwise from east
+CLOCKWISE = {"ned", "cw", "clockwise", "compass"}
+FRAMES = FROM_EAST | {"ned"}
 DISPLACEMENTS = {"surge": "x_m", "sway": "y_m", "heave": "z_m"}  # of a body on a rig
 LENGTHS = {"m", "mm", "cm"}
 SPEEDS = {"rate", "speed", "velocity", "vel"}
@@ -417,7 +420,9 @@ def has_opposite_sense(column: str, tokens: frozenset[str]) -> bool:
     """
     if column in ("y_m", "v_mps"):
         return bool(tokens & TO_PORT)
-    return column in ("psi_rad", "r_radps") and bool(tokens & COUNTERCLOCKWISE)
+    if column in ("psi_rad", "r_radps"):
+        return bool(tokens & (COUNTERCLOCKWISE | FROM_EAST))
+    return False
 
 
 def _of_numbered(name: str, tokens: frozenset[str], log: Log) -> str | None:
@@ -466,7 +471,7 @@ def _effort(words: Sequence[str], tokens: frozenset[str]) -> str | None:
 
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     """The pose or velocity of a name; None for another."""
-    last = [word for word in last if word not in TO_PORT | COUNTERCLOCKWISE] or last
+    last = [word for word in last if word not in TO_PORT | COUNTERCLOCKWISE | FRAMES] or last
     end = last[-1]
     if found := _angular_rate(end, tokens):
         return found
@@ -477,6 +482,8 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
         and not tokens & MOTIONS
         and (tokens & (PLACES | SATELLITES) or len(last) == 1)
     ):
+        if tokens & FROM_EAST and not log.frame:
+            return {"x": "y_m", "y": "x_m"}[end]
         return {"x": "x_m", "y": "y_m"}[end]
     if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]
