@@ -237,9 +237,12 @@ def _with_continued_clocks(log: Log) -> Log:
         times[key], steps = continue_clock(signal.t, streams[key])
         for step in steps:
             stream = signal.source or name.rpartition(".")[0] or log.path.name
+            moved = f"goes back by {step.seconds:.6g} s"
+            if step.seconds < 0.0:
+                moved = f"is put forward by {-step.seconds:.6g} s"
             text = (
-                f"{log.path}: {stream}: the clock goes back by {step.seconds:.3g} s after sample "
-                f"{step.row}, but the samples go on; the later ones are moved so that they follow. "
+                f"{log.path}: {stream}: the clock {moved} after sample {step.row}, but the samples "
+                "go on; the later ones are moved so that they follow. "
                 "If the log was begun again there, cut it"
             )
             remarks[text] = None

@@ -22,8 +22,8 @@ from boatsim.recordings.importing.track import MIN_WINDOWS, WINDOW, Track, value
 # Resultant length of the differences between course and heading, 1 for a constant difference: from
 # the first number on one follows the other, and below the second it does not. A vessel that drifts,
 # or goes astern at times, lowers both
-MIN_AGREEMENT, MAX_DISAGREEMENT = 0.8, 0.5
-MIN_SHARE_OF_SPEED = 0.5  # of the median; at a lower speed the course is noise
+MIN_AGREEMENT, MAX_DISAGREEMENT = 0.7, 0.5
+SPEED_PERCENTILE = 75.0  # above it a vessel makes way ahead, and drifts least
 MAX_OFFSET = np.pi / 8.0  # [rad] of the mean difference; headings from north and east differ by 90 deg
 MIN_RATE_CORRELATION = 0.7  # of a rate with the changes of the heading that show its sense
 
@@ -107,7 +107,7 @@ def _agreement(g: Classification, track: Track) -> _Agreement:
     inside = (track.t > t[0]) & (track.t < t[-1]) if len(t) else np.zeros(0, dtype=np.bool_)
     if inside.sum() < MIN_WINDOWS:
         return _Agreement(0j, 0j)
-    fast = inside & (track.speed > MIN_SHARE_OF_SPEED * float(np.median(track.speed[inside])))
+    fast = inside & (track.speed >= float(np.percentile(track.speed[inside], SPEED_PERCENTILE)))
     course = np.arctan2(track.east[fast], track.north[fast])
     bow = _nearest(track.t[fast], t, psi)
     return _Agreement(

@@ -8,7 +8,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.signal_classification import (
+    Classification,
+    has_opposite_sense,
+)
 
 TIME_DIGITS = 6  # decimals of a time [s]; two samples in one microsecond are one
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
@@ -43,7 +46,8 @@ class Turning:
                         turn = 360.0
                     values = np.gradient(np.unwrap(values, period=turn), t)
                 is_compass = column == "psi_rad" and "yaw" not in g.tokens
-                if enu and not is_compass:
+                is_to_port = enu and not is_compass
+                if is_to_port or not enu and has_opposite_sense(column, g.tokens):
                     values = -values
                 self.t, self.r = t, values
                 return
