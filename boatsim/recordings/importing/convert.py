@@ -121,7 +121,8 @@ def convert_log(
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
         t = t - map.latency.get(name, 0.0)
-        disorder.setdefault(count_unordered_samples(t), []).append(name)
+        known = np.isfinite(values)  # of a table whose sensors share the rows
+        disorder.setdefault(count_unordered_samples(t[known]), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)

@@ -64,8 +64,8 @@ SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split(
 STICKS = set("rcin joy stick joystick manual pilot".split())
 HELM = set("rudder steer steering nozzle azimuth azi helm delta jet angle pos wheel tiller".split())
 SIDES = {
-    **dict.fromkeys(("port", "left", "ps", "portside"), "port"),
-    **dict.fromkeys(("starboard", "stbd", "right", "sb"), "starboard"),
+    **dict.fromkeys(("port", "left", "ps", "portside", "bb"), "port"),
+    **dict.fromkeys(("starboard", "stbd", "stb", "right", "sb"), "starboard"),
 }
 LETTERS = {"l": "port", "p": "port", "r": "starboard", "s": "starboard"}  # sides of drives
 PULSE = (800.0, 2200.0)  # [us] range of the pulses of all servos and motor controllers
@@ -373,7 +373,7 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
         or "n" in tokens
         and not tokens - NUMBERED
     )
-    driven = driven or _is_share_of_a_side(signal, tokens)
+    driven = driven or _is_share_of_a_side(signal, tokens) or _is_force_of_a_side(signal, tokens)
     if not driven or tokens & OTHER or "wheel" in tokens and tokens & SPEEDS:
         return None
     if tokens & SENSED and not tokens & {"cmd", "command", "commanded"}:
@@ -399,6 +399,12 @@ def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
         return False
     units = map(WORDS.get, (signal.unit.lower(), *tokens))
     return "percent" in units
+
+
+def _is_force_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
+    """Whether a name has nothing but a side, F or force, and the unit N, as `F_port [N]`."""
+    is_force = signal.unit == "N" and bool(side_from_tokens(tokens))
+    return is_force and not tokens - {"f", "force"} - NUMBERED - set(LETTERS)
 
 
 def names_channel(name: str, channels: Sequence[str]) -> bool:
