@@ -1,7 +1,8 @@
 """Clocks of loggers that were set back, or that began again, while rows went on.
 
 A satellite receiver or a network sets the clock of a logger during a run, a counter overflows, or
-the logger is started again and appends to its file. Rows sorted by such times would mix two parts
+the logger is started again and appends to its file. A clock of local time changes by an hour to and
+from summer time. Rows sorted by such times would mix two parts
 of a run.
 """
 

@@ -51,8 +51,8 @@ def seconds_from_dates(cells: Sequence[str]) -> Array | None:
     """Return the times (N,) in s of a column of dates or times of day.
 
     Dates are in any usual order, with any usual separators and fractions of a second, and count
-    from 1970, UTC without a zone. A year may have two digits if a time of day follows. Times of day count from midnight, go on after the next midnight,
-    and need seconds.
+    from 1970, UTC without a zone. A year may have two digits if a time of day follows. Times of day
+    count from midnight, go on after the next midnight, and need seconds.
 
     Args:
         cells: Cells of the column; an empty one becomes nan.

@@ -23,8 +23,14 @@ from boatsim.recordings.importing.track import MIN_WINDOWS, WINDOW, Track, value
 # the first number on one follows the other, and below the second it does not. A vessel that drifts,
 # or goes astern at times, lowers both
 MIN_AGREEMENT, MAX_DISAGREEMENT = 0.7, 0.5
+# Circular variance of the differences in the wrong unit, at least and relative to the right one: on
+# a straight course both are small
+MIN_SPREAD, SPREAD_RATIO = 0.1, 4.0
 SPEED_PERCENTILE = 75.0  # above it a vessel makes way ahead, and drifts least
-MAX_OFFSET = np.pi / 8.0  # [rad] of the mean difference; headings from north and east differ by 90 deg
+# Words of a name, heading of the axis from which such a heading counts [rad], and its name
+SENSES = ((COUNTERCLOCKWISE, 0.0, "north"), (FROM_EAST, 0.5 * np.pi, "east"))
+# [rad] of the mean difference; headings from north and east differ by a quarter turn
+MAX_OFFSET = np.pi / 8.0
 MIN_RATE_CORRELATION = 0.7  # of a rate with the changes of the heading that show its sense
 
 
@@ -51,19 +57,24 @@ def heading_by_course(g: Classification, track: Track | None) -> Classification:
         other = "" if g.word == "deg" else "deg"
         changed = replace(g, word=other)
         as_it_is, with_other = _best(_agreement(g, track)), _best(_agreement(changed, track))
-        if as_it_is < MAX_DISAGREEMENT and with_other > MIN_AGREEMENT:
+        is_worse = 1.0 - as_it_is > max(MIN_SPREAD, SPREAD_RATIO * (1.0 - with_other))
+        if with_other > MIN_AGREEMENT and is_worse:
             unit = "degrees" if other else "radians"
             g = replace(changed, why=f"CHECK: {unit} by the course of the track")
     if g.tokens & (CLOCKWISE | COUNTERCLOCKWISE | FROM_EAST):
         return g
+    return _with_sense(g, track)
+
+
+def _with_sense(g: Classification, track: Track) -> Classification:
+    """A heading whose name states no sense, with the sense in which it follows the course."""
     found = _agreement(g, track)
     if abs(found.clockwise) > MAX_DISAGREEMENT or abs(found.counterclockwise) < MIN_AGREEMENT:
         return g
-    sense = "counterclockwise"
-    for marks, origin, name in ((COUNTERCLOCKWISE, 0.0, "north"), (FROM_EAST, 0.5 * np.pi, "east")):
+    for marks, origin, name in SENSES:
         off = float(np.angle(found.counterclockwise * np.exp(-1j * origin)))
         if abs(off) < MAX_OFFSET:
-            why = f"CHECK: {sense} from {name} by the course of the track"
+            why = f"CHECK: counterclockwise from {name} by the course of the track"
             tokens = g.tokens | {min(marks)}
             return replace(g, tokens=tokens, why="; ".join(filter(None, (g.why, why))))
     return g
@@ -123,5 +134,8 @@ def _nearest(rows: Array, t: Array, values: Array) -> Array:
 
 
 def _best(found: _Agreement) -> float:
-    """Resultant length of the better sense."""
-    return max(abs(found.clockwise), abs(found.counterclockwise))
+    """Share of the course along the heading, in the best of the senses."""
+    shares = [found.clockwise.real]
+    for _, origin, _ in SENSES:
+        shares.append(float((found.counterclockwise * np.exp(-1j * origin)).real))
+    return max(shares)

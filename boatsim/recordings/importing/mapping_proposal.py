@@ -321,8 +321,8 @@ def _time_lines(log: Log) -> list[str]:
             is_clock = any(np.array_equal(signal.values, t) for signal in log.signals.values())
             key = f"time.{toml_key(source)}" if source else "time"
             if not is_clock:
-                line = f'# {key} = "..."  # CHECK: no column holds times; rows are taken as 1 s apart'
-                lines.append(line)
+                why = "no column holds times; rows are taken as 1 s apart"
+                lines.append(f'# {key} = "..."  # CHECK: {why}')
     return lines
 
 

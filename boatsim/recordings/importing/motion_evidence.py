@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.expression import UNITS
+from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.heading_evidence import heading_by_course, rate_by_heading
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import (
@@ -142,8 +142,8 @@ def _common(north: Signal, east: Signal) -> tuple[Array, Array, Array]:
 
 def _in_si(g: Classification) -> Array:
     """Values (N,) of a signal in the unit of its column."""
-    if g.word in UNITS:
-        return g.signal.values * UNITS[g.word]
+    if g.word:
+        return parse(f"x * {g.word}", ()).convert(g.signal.values)
     return g.signal.values
 
 
@@ -162,7 +162,7 @@ def _with_unit(
         for word, factor, unit in _units_of(degrees):
             if 1.0 / TOLERANCE < ratio / factor < TOLERANCE:
                 return replace(g, word=word, why=f"{unit} by the changes of {angle.name}")
-    in_degrees = heading.word == "deg"
+    in_degrees = heading.word.startswith("deg")
     is_helm = g.column == "command" and bool(g.tokens & ANGLES)
     if in_degrees and not g.word and (g.column in TURNED or is_helm):
         return replace(g, word=degrees, why=f"CHECK: degrees as {heading.name}")

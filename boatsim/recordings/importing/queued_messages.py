@@ -2,7 +2,8 @@
 
 A link or a program stalls, and nothing is logged. Then the queued messages are read one after
 another, faster than they were sent: the recorded vessel stands still over the gap, and afterwards
-moves faster than before and after, until the queue is empty.
+moves faster than before and after, until the queue is empty. A queue that is read at once shows
+itself by the number of its messages too.
 """
 
 from collections.abc import Iterator

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
@@ -30,6 +31,7 @@ WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
     **dict.fromkeys(("us", "µs"), "us"),
     "deg/min": "degpmin",
     "mm": "mm",
+    "cdeg": "deg * 0.01",
     "cm": "cm",
     "km": "km",
     "ft": "ft",
@@ -109,6 +111,7 @@ ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 LEAST_SCALED = 1e5  # [1e-7 deg] 0.01 degrees; smaller numbers are of no place in this unit
 FULL_CIRCLE = 360.0  # [deg] largest order to a thruster that turns around
+MANY_TURNS = 10.0 * FULL_CIRCLE  # [deg] no heading in whole degrees is counted on as far
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -243,6 +246,8 @@ def classify_signal(
         return None  # the clock of a table is no signal
     words = tokenize_name(name) or [""]  # a name may have no word
     tokens = frozenset(words)
+    if words[-2:] == ["e", "7"]:  # lat_e7, in 1e-7 degrees
+        words = words[:-2]
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 * bool(np.ptp(values) > 0.0)
     rate = (
@@ -260,6 +265,8 @@ def classify_signal(
     if effort and not _is_load(tokens, body):
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
+    if kind is None and signal.source and side_from_tokens(tokens):
+        kind = _drive_kind(signal, tokens | frozenset(tokenize_name(Path(signal.source).stem)))
     if kind is None and _is_direction_order(name, tokens, log):
         word, why = _unit_word(name, signal), ""
         if not (signal.unit or word) and 2.0 * np.pi < float(np.max(np.abs(values))) <= FULL_CIRCLE:
@@ -322,8 +329,17 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
     if column.endswith("_rad"):
         unit, largest = "deg", 2.0 * pi + 0.3
     if float(np.nanmax(np.abs(signal.values))) > largest:
+        if column == "psi_rad" and _is_in_hundredths(signal):
+            return "deg * 0.01", "hundredths of degrees by its range and whole numbers"
         return unit, "degrees by its range"
     return word, BY_RANGE
+
+
+def _is_in_hundredths(signal: Signal) -> bool:
+    """Whether a heading is in 0.01 degrees: whole numbers up to 36000, far beyond a circle."""
+    values = signal.values[np.isfinite(signal.values)]
+    is_whole = bool((values == np.round(values)).all())
+    return is_whole and values.min() >= 0.0 and MANY_TURNS < values.max() <= 100.0 * FULL_CIRCLE
 
 
 def has_stated_unit(name: str, signal: Signal) -> bool:

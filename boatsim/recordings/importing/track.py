@@ -283,7 +283,8 @@ def unit_of_rate(g: Classification, heading: Classification) -> str | None:
         heading: The heading with its unit.
 
     Returns:
-        "" for radians per second, "degps" or "degpmin"; None if the rate does not follow the heading closely enough to show it.
+        "" for radians per second, "degps" or "degpmin"; None if the rate does not follow the
+        heading closely enough to show it.
     """
     t, rate = values_in_si(replace(g, word=""))
     at, psi = values_in_si(heading)

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.physics.base import Array
+from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.signal_classification import (
     Classification,
     has_opposite_sense,
@@ -42,8 +43,8 @@ class Turning:
                 t, values = _sorted_samples(g)
                 if column == "psi_rad" and len(t) > 2:
                     turn = 2.0 * np.pi
-                    if g.word == "deg":
-                        turn = 360.0
+                    if g.word:
+                        turn /= float(parse(f"x * {g.word}", ()).convert(np.ones(1))[0])
                     values = np.gradient(np.unwrap(values, period=turn), t)
                 is_compass = column == "psi_rad" and "yaw" not in g.tokens
                 is_to_port = enu and not is_compass
