@@ -25,6 +25,7 @@ from validation.waves import (
     wigley_pitch,
     wigley_speed,
 )
+from validation.waves.speed_diffraction import MovingHull
 
 WORK = Path("out/validation/waves")
 STRONG = 0.3  # reflection above which the error of the drift is counted; below the drift is small
@@ -144,6 +145,7 @@ def print_wigley_pitch(folder: Path) -> None:
 def print_wigley_speed(folder: Path) -> None:
     """Print measured and computed heave, damping and loads of a Wigley hull at forward speed."""
     table = wigley_speed.slow_table(folder)
+    hull = MovingHull(wigley_speed.write_mesh(folder))
     print(
         "\nWigley hull III in head waves at forward speed, from coefficients at zero speed, against"
     )
@@ -154,14 +156,20 @@ def print_wigley_speed(folder: Path) -> None:
     print(
         "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
     )
-    print("the diffraction at forward speed too, which panel_wave_loads leaves out")
-    print("  Fn  wave / L  heave   none          body axes     forward speed  diffraction")
-    rows = wigley_speed.heave_at_speed(table)
+    print(
+        "the diffraction at forward speed too, which panel_wave_loads leaves out; encounter: with"
+    )
+    print("the diffraction at the frequency of encounter too")
+    print(
+        "  Fn  wave / L  heave   none          body axes     forward speed diffraction   encounter"
+    )
+    rows = wigley_speed.heave_at_speed(table, hull)
     errors: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
         cells = []
         values = dict(zip(wigley_speed.METHODS, row.found, strict=True))
-        for name, found in (values | {"diffraction": row.diffraction}).items():
+        further = {"diffraction": row.diffraction, "encounter": row.encounter}
+        for name, found in (values | further).items():
             errors.setdefault(name, []).append((row.measured, found))
             cells.append(f"{found:.3f} {100 * (found / row.measured - 1):+4.0f} %")
         print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {row.measured:5.2f}  {'  '.join(cells)}")
@@ -173,22 +181,30 @@ def print_wigley_speed(folder: Path) -> None:
         text = ", ".join(f"{name} {found:.3f}" for name, found in values.items())
         print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {text}")
     print("held hull at Fn 0.3, force over C33 a and moment over k C55 a")
-    print("wave / L  force  zero speed    moment  zero speed    diffraction")
-    loads = wigley_speed.wave_loads(table)
-    for load in loads:
-        force, moment = load.measured
-        own = load.zero_speed[0]
-        cells = [f"{force:.3f}  {own:.3f} {100 * (own / force - 1):+4.0f} %"]
-        cells.append(f" {moment:.3f}")
-        for pair in (load.zero_speed, load.diffraction):
-            cells.append(f"{pair[1]:.3f} {100 * (pair[1] / moment - 1):+4.0f} %")
-        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
-    before = [(load.measured[1], load.zero_speed[1]) for load in loads]
-    after = [(load.measured[1], load.diffraction[1]) for load in loads]
     print(
-        f"mean error of the moment: zero speed {100 * wigley_speed.mean_error(before):.1f} %, "
-        f"diffraction {100 * wigley_speed.mean_error(after):.1f} %"
+        "wave / L  force  zero speed    encounter     moment  zero speed    diffraction   encounter"
     )
+    loads = wigley_speed.wave_loads(table, hull)
+    for load in loads:
+        cells = []
+        for place, pairs in enumerate(
+            ((load.zero_speed, load.encounter), (load.zero_speed, load.diffraction, load.encounter))
+        ):
+            cells.append(f"{' ' * place}{load.measured[place]:.3f}")
+            for pair in pairs:
+                error = pair[place] / load.measured[place] - 1
+                cells.append(f"{pair[place]:.3f} {100 * error:+4.0f} %")
+        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
+    for place, kind, names in (
+        (0, "force", ("zero_speed", "encounter")),
+        (1, "moment", ("zero_speed", "diffraction", "encounter")),
+    ):
+        words = []
+        for name in names:
+            both = [(load.measured[place], getattr(load, name)[place]) for load in loads]
+            error = 100 * wigley_speed.mean_error(both)
+            words.append(f"{name.replace('_', ' ')} {error:.1f} %")
+        print(f"mean error of the {kind}: {', '.join(words)}")
     print("forced heave at Fn 0.3, on which strip theory has no effect of speed")
     print("w sqrt(L / g)  A33 / rho V               B33 sqrt(L / g) / rho V")
     for one in wigley_speed.forced_heave(table):
@@ -286,8 +302,11 @@ def print_lofted_ship(mss: Path, work: Path) -> None:
         cells = []
         for place in range(2):
             rest, moment, met = (pair[place] for pair in load.found)
-            cells.append(f"{load.published[place]:5.3f}  {rest:5.3f}  {moment:6.3f}  {met:9.3f}")
-        print(f"{load.speed:7.2f}  {load.ratio:8.2f}  {'     '.join(cells)}")
+            cell = f"{load.published[place]:5.3f}  {rest:5.3f}"
+            if load.speed > 0.0:
+                cell += f"  {moment:6.3f}  {met:9.3f}"
+            cells.append(f"{cell:31}")
+        print(f"{load.speed:7.2f}  {load.ratio:8.2f}  {'     '.join(cells)}".rstrip())
     rows = s175.motions(ship, veres)
     speeds = sorted({row.speed for row in rows})
     for speed in speeds:
@@ -301,7 +320,7 @@ def print_lofted_ship(mss: Path, work: Path) -> None:
         f"{first:g} to {last:g} L in roll:"
     )
     print("number of waves with errors up to 10 %, mean and largest error")
-    print(f"  U m/s  waves  motion  {'  '.join(f'{name:18}' for name in s175.METHODS)}")
+    print(f"  U m/s  waves  motion  {'  '.join(f'{name:18}' for name in s175.METHODS)}".rstrip())
     for line in lofted_error_lines(rows, speeds):
         print(line)
     coarse = s175.Ship(mss, work, s175.COARSE, veres.coefficients)
@@ -351,14 +370,15 @@ def lofted_error_lines(rows: list[s175.Motion], speeds: list[float]) -> list[str
     """
     lines = []
     for speed in speeds:
-        within, waves = [0] * len(s175.METHODS), 0
+        methods = 1 if speed == 0.0 else len(s175.METHODS)
+        within, waves = [0] * methods, 0
         for heading, words, axes in (
             (s175.HEAD, "head", (s175.HEAVE, s175.PITCH)),
             (s175.BEAM, "beam", (s175.HEAVE, s175.ROLL)),
         ):
             for axis in axes:
                 cells = []
-                for method in range(len(s175.METHODS)):
+                for method in range(methods):
                     one = s175.errors(rows, speed, heading, axis, method)
                     within[method] += one.within
                     cells.append(
@@ -484,10 +504,11 @@ def print_ship_motions(navaltoolbox: Path) -> None:
     print("the slope of the wave; none: no effect of speed but the frequency of encounter; body:")
     print("equations of motion in body axes; terms: with the terms of forward speed; diffr.: with")
     print("the moment of the diffraction at speed too; damp.: as terms, but the damping of pitch")
-    print("at zero speed")
-    heads = "none   body   terms  diffr. damp."
-    print(f"  Fn    Hz  wave / L  heave  {heads}    pitch  {heads}")
-    motions = dtmb5415.motions(table)
+    print("at zero speed; enc.: as terms, with the diffraction at the frequency of encounter")
+    heads = "none   body   terms  diffr. damp.  enc. "
+    print(f"  Fn    Hz  wave / L  heave  {heads}    pitch  {heads}".rstrip())
+    met = dtmb5415.met_excitation(navaltoolbox)
+    motions = dtmb5415.motions(table, met)
     for motion in motions:
         text = []
         for place, measured in enumerate(motion.measured):
@@ -496,7 +517,7 @@ def print_ship_motions(navaltoolbox: Path) -> None:
         start = f"{motion.froude:4.2f} {motion.encounter:5.3f}  {motion.ratio:8.2f}"
         print(f"{start}  {'    '.join(text)}")
     quarter = 0.25 * dtmb5415.MODEL_LENGTH
-    light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter))
+    light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter), met)
     print("number of waves with errors up to 10 %, and mean and largest error")
     print(
         "gyradius  method         heave, 1 to 2 L     pitch, 1 to 2 L     heave, from 1 L on  "

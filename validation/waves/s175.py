@@ -129,6 +129,7 @@ class Ship:
         in_sname = (triangles - np.array([ahead, 0.0, 0.0])) * np.array([1.0, -1.0, -1.0])
         self._wave = UndisturbedWave(wetted_triangles(in_sname), found.density)
         self._moving = MovingHull(hull)
+        self._met: dict[MetWave, Array] = {}
 
     def slow(self, w: float) -> tuple[Array, Array]:
         """Return added mass and damping (6, 6) at zero speed.
@@ -149,7 +150,10 @@ class Ship:
         """
         met = encounter(w, heading, speed)
         if method == "encounter" and met != w:
-            return self._moving.excitation(MetWave(w, met, heading, speed))
+            wave = MetWave(w, met, heading, speed)
+            if wave not in self._met:  # a solution takes seconds
+                self._met[wave] = self._moving.excitation(wave)
+            return self._met[wave]
         place = int(np.argmin(np.abs(self.coefficients.heading - heading)))
         found = np.array(self._excitation(w)[place])
         if method != "at rest":
