@@ -94,7 +94,9 @@ class Ship:
         mass: Displaced mass [kg].
     """
 
-    def __init__(self, mss: Path, work: Path, mesh: tuple[float, int], theirs: VeresCoefficients):
+    def __init__(
+        self, mss: Path, work: Path, mesh: tuple[float, int], theirs: VeresCoefficients
+    ) -> None:
         """Loft the hull and compute its coefficients.
 
         Args:
@@ -199,7 +201,7 @@ def encounter(w: float, heading: float, speed: float) -> float:
         heading: Direction to which it runs, relative to the ship [rad].
         speed: Forward speed [m/s].
     """
-    if heading == BEAM:
+    if heading == BEAM:  # whose cosine is not rounded to 0
         return w
     return w - w * w / GRAVITY * speed * float(np.cos(heading))
 
