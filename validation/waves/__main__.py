@@ -356,7 +356,7 @@ def print_lofted_motions(rows: list[s175.Motion], words: str) -> None:
                 if (row.ratio, row.axis) == (ratio, axis):
                     cell = f"{row.published:6.3f}"
                     for found in row.found[:methods]:
-                        cell += f"{found:8.3f} {100 * (found / row.published - 1):+3.0f} %"
+                        cell += f"{found:7.3f} {100 * (found / row.published - 1):+4.0f} %"
             cells.append(cell)
         print(f"{ratio:8.2f}  {'   '.join(cells)}".rstrip())
 
