@@ -19,7 +19,8 @@ from boatsim.physics.hull.mesh import ClosedMesh, read_closed_mesh
 from boatsim.physics.hull.submerged import submerged_part, wetted_triangles
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS
-from validation.waves.slow_table import SlowTable, Wave
+from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
+from validation.waves.speed_diffraction import MetWave, MovingHull
 
 # Mesh of the ship in github.com/NavalToolbox/navaltoolbox-lib, commit 6133809 of January 2026:
 # x ahead of the aft perpendicular, z above the keel
@@ -201,6 +202,22 @@ def upright(hull: LoadedHull) -> tuple[float, float]:
     return volume, metacentric_heights(hull, at_rest)[0]
 
 
+def model_mesh(folder: Path) -> HullMesh:
+    """Return the hull of the model in the water of its tank.
+
+    Args:
+        folder: Folder of the repository of NavalToolbox.
+    """
+    return HullMesh(
+        folder / MESH,
+        (DRAUGHT + DOME) * SCALE,
+        origin=(LENGTH - CENTRE) * SCALE,
+        scale=SCALE,
+        density=FRESH,
+        depth=TANK_DEPTH,
+    )
+
+
 def compute(folder: Path) -> Coefficients:
     """Return the coefficients of the model in head waves, about a point above its mass centre.
 
@@ -210,14 +227,7 @@ def compute(folder: Path) -> Coefficients:
     Raises:
         BadInput: Capytaine is not installed, or the mesh cannot be read.
     """
-    mesh = HullMesh(
-        folder / MESH,
-        (DRAUGHT + DOME) * SCALE,
-        origin=(LENGTH - CENTRE) * SCALE,
-        scale=SCALE,
-        density=FRESH,
-        depth=TANK_DEPTH,
-    )
+    mesh = model_mesh(folder)
     frequencies = [float(w) for w in np.linspace(LOWEST, HIGHEST, NUMBER)]
     rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
     return coefficients_of_rows(rows, mesh, [HEAD])
@@ -339,16 +349,43 @@ class Motion(NamedTuple):
     found: tuple[tuple[float, float], ...]  # by each of `NAMES`
 
 
-# Further methods, both with the terms of forward speed: with the moment of the diffraction at speed
-# too, and with the damping of pitch at zero speed, as measured on Wigley hulls (`wigley_speed`)
-NAMES = (*METHODS, "diffraction", "damping")
+# Further methods, all with the terms of forward speed: with the moment of the diffraction at speed
+# too, with the damping of pitch at zero speed, as measured on Wigley hulls (`wigley_speed`), and
+# with the excitation of `speed_diffraction`
+NAMES = (*METHODS, "diffraction", "damping", "encounter")
 
 
-def motions(table: SlowTable) -> list[Motion]:
+def met_excitation(folder: Path) -> dict[tuple[float, float], Array]:
+    """Return the excitation with the diffraction at the frequency of encounter.
+
+    Args:
+        folder: Folder of the repository of NavalToolbox.
+
+    Returns:
+        For the Froude number and the frequency of encounter [Hz] of each test at speed, the complex
+        excitation (2,) in heave and pitch per amplitude [N/m, N].
+
+    Raises:
+        BadInput: Capytaine is not installed, or the mesh cannot be read.
+    """
+    hull, found = MovingHull(model_mesh(folder)), {}
+    for froude, points in MEASURED.items():
+        speed = froude * float(np.sqrt(GRAVITY * MODEL_LENGTH))
+        for hertz, _, _ in points:
+            if speed == 0.0:
+                continue
+            wave = met_wave(2.0 * np.pi * hertz, speed)
+            met = MetWave(wave.frequency, wave.encounter, HEAD, speed)
+            found[froude, hertz] = hull.excitation(met)[[HEAVE, PITCH]]
+    return found
+
+
+def motions(table: SlowTable, met: dict[tuple[float, float], Array]) -> list[Motion]:
     """Return measured and computed motions.
 
     Args:
         table: The model.
+        met: Excitation of the tests at speed, by `met_excitation`.
     """
     rows = []
     for froude, points in MEASURED.items():
@@ -360,6 +397,8 @@ def motions(table: SlowTable) -> list[Motion]:
                 found.append(_over_slope(table.heave_and_pitch(wave, method), wave))
             found.append(_over_slope(table.heave_and_pitch(wave, METHODS[-1], True), wave))
             found.append(_over_slope(_with_damping_at_rest(table, wave), wave))
+            force = met.get((froude, hertz), table.excitation(wave))
+            found.append(_over_slope(table.motion_under(wave, METHODS[-1], force), wave))
             ratio = 2.0 * np.pi / wave.number / MODEL_LENGTH
             pair = (measured[0], measured[1])
             rows.append(Motion(froude, hertz, ratio, pair, tuple(found)))

@@ -43,15 +43,26 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
     y = half_breadth(stations, lines)
     found = []
     for side in (1.0, -1.0):
-        points = np.stack([stations, centre + side * y, lines], axis=-1)
-        a, b = points[:-1, :-1], points[1:, :-1]
-        c, d = points[1:, 1:], points[:-1, 1:]
-        first, second = np.stack([a, c, b], axis=2), np.stack([a, d, c], axis=2)
-        triangles = np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+        triangles = grid_triangles(np.stack([stations, centre + side * y, lines], axis=-1))
         if side < 0.0:
             triangles = triangles[:, ::-1]
         found.append(triangles)
     return np.concatenate(found)
+
+
+def grid_triangles(points: Array) -> Array:
+    """Return the triangles (N, 3, 3) between points of a grid.
+
+    They are counter-clockwise seen from port if the first index increases forward and the second
+    one upward.
+
+    Args:
+        points: Points (I, J, 3) [m].
+    """
+    a, b = points[:-1, :-1], points[1:, :-1]
+    c, d = points[1:, 1:], points[:-1, 1:]
+    first, second = np.stack([a, c, b], axis=2), np.stack([a, d, c], axis=2)
+    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
 
 
 def closed_hull(x: Array, z: Array, half_breadth: Surface, centre: float = 0.0) -> Array:

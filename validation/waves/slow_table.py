@@ -103,6 +103,16 @@ class SlowTable:
             method: One of `ship_speed.METHODS`.
             diffraction: Whether the excitation contains the moment of the diffraction at speed.
         """
+        return self.motion_under(wave, method, self.excitation(wave, diffraction))
+
+    def motion_under(self, wave: Wave, method: str, excitation: Array) -> Array:
+        """Return the complex motion (2,) per amplitude under a given excitation [m/m, rad/m].
+
+        Args:
+            wave: The wave.
+            method: One of `ship_speed.METHODS`.
+            excitation: Complex excitation (2,) in heave and pitch per amplitude [N/m, N].
+        """
         w = wave.encounter
         dynamic = self.stiffness - w * w * self.body + self.radiation(w, wave.speed, method)
-        return np.asarray(np.linalg.solve(dynamic, self.excitation(wave, diffraction)))
+        return np.asarray(np.linalg.solve(dynamic, excitation))
