@@ -37,8 +37,9 @@ def cpu_s() -> float:
 def measure_filter(vessel: Vessel) -> tuple[float, float]:
     """Return CPU times of the first run of the filter over a recording, and of a further one."""
     from boatsim.diagnosis.candidates import diagnosis_program
-    from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+    from boatsim.diagnosis.prior_noise import prior_noise_levels
     from boatsim.diagnosis.problem import Problem
+    from boatsim.diagnosis.recording_mapping import map_recording
     from boatsim.recordings.table import Recording
 
     t = np.arange(ROWS) / RATE

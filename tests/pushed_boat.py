@@ -8,8 +8,9 @@ import numpy as np
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array

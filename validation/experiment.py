@@ -29,8 +29,10 @@ from boatsim.diagnosis.experiment_design.next_experiment import (
     best_plan,
     undecided_hypotheses,
 )
-from boatsim.diagnosis.filter import dof_in_state_order, map_recording, prior_noise_levels
+from boatsim.diagnosis.filter import dof_in_state_order
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem, froude_scale
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics import vessel
 from boatsim.physics.base import Array

@@ -35,16 +35,13 @@ from rich.table import Table
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import (
-    dof_in_state_order,
-    map_recording,
-    prior_noise_levels,
-    shared_noise,
-)
+from boatsim.diagnosis.filter import dof_in_state_order
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.locate.missing_force import missing_force
 from boatsim.diagnosis.locate.regions import Region, find_missing_force_conditions
+from boatsim.diagnosis.prior_noise import prior_noise_levels, shared_noise
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

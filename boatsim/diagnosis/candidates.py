@@ -357,6 +357,9 @@ def missing_requirements(
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    for role, channel in vessel.specified_inputs(found).items():
+        if isinstance(channel, str) and channel not in vessel.roles:
+            return f"on.{role} = {channel}, which no effect of the vessel itself uses"
     if not requested and (reason := found.missing_for_test(vessel)):
         return reason
     if isinstance(found, ChannelEffect) and found.acts_astern and _is_one_way(vessel, found):

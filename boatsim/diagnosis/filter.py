@@ -5,7 +5,7 @@ The model has one slowly varying latent force per degree of freedom, an Ornstein
 estimates of parameters are not biased to absorb it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -14,18 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
+from boatsim.diagnosis.config import DEFAULT, FilterConfig
 from boatsim.diagnosis.filter_arguments import (
     FilterArguments,
     VesselArguments,
     inertia_with_added_mass,
     rigid_body_values,
-)
-from boatsim.diagnosis.input_noise import (
-    input_noise_density,
-    interpolate_measured_inputs,
-    measured_force_mask,
-    measured_input_indices,
 )
 from boatsim.diagnosis.recent_results import RecentResults
 from boatsim.diagnosis.work import (
@@ -35,9 +29,7 @@ from boatsim.diagnosis.work import (
     WorkCount,
     integration_count,
 )
-from boatsim.errors import BadInput
 from boatsim.physics.base import DriftingMeasurement, RandomForce
-from boatsim.physics.commands import clipped_recorded_commands
 from boatsim.physics.kernel.records import (
     FilterHistory,
     InitialState,
@@ -47,14 +39,10 @@ from boatsim.physics.kernel.records import (
     VesselNumbers,
 )
 from boatsim.physics.native.calls import PackedArgument
-from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
-from boatsim.physics.signals import AXES, NOISE, Array, Signal, motion_signals
+from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
-# rows: the shortest recording allowed is split into thirds
-FEWEST_IN_PART = FEWEST_ROWS // 3
 # Latest results of a recording that are kept, because the stages of a diagnosis ask for them again.
 # A pass over 6,000 rows in six degrees of freedom has 30 MB, free runs have 1 MB.
 KEPT_PASSES = 2
@@ -672,7 +660,7 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
         rate = nq + code
         if code < nq:
             mean[code] = y[0]
-            speed = _rates_of_change(t, y, mapped.config)
+            speed = rates_of_change(t, y, mapped.config)
             covariance[rate, rate] = mapped.config.usual_rate**2
             if len(speed):
                 covariance[rate, rate] = float(np.mean(speed**2)) + LEAST_RATE_VARIANCE
@@ -691,8 +679,17 @@ def _estimated_initial(mapped: MappedRecording) -> InitialState:
     return InitialState(mean, covariance, rates)
 
 
-def _rates_of_change(t: Array, y: Array, config: FilterConfig) -> Array:
-    """Rates of change of a signal over some rows, but at least some time."""
+def rates_of_change(t: Array, y: Array, config: FilterConfig) -> Array:
+    """Return the rates of change of a signal over some rows, but at least some time.
+
+    Args:
+        t: Times (N,) [s], increasing.
+        y: Values (N,) of the signal.
+        config: Settings of the filter: the least number of rows and time.
+
+    Returns:
+        Rates of change, in the unit of the signal per second; fewer than N.
+    """
     time = max(config.rate_time, config.rate_rows * float(np.median(np.diff(t))))
     gap = np.searchsorted(t, t + time)
     gap = gap.clip(max=len(t) - 1)
@@ -730,116 +727,6 @@ def dof_in_state_order(vessel: Vessel) -> tuple[str, ...]:
     return tuple(axis for axis in AXES if axis in vessel.dof)
 
 
-def map_recording(
-    recording: Recording,
-    program: Program,
-    shared_noise: Mapping[str, float] | None = None,
-    noise_ratio: Mapping[str, float] | None = None,
-    config: DiagnosisConfig = DEFAULT,
-) -> MappedRecording:
-    """Map a recording to a compiled vessel program, so that the Kalman filter can be run over it.
-
-    Its columns become measured channels and commands of the vessel, and its notes set parameters
-    and noise levels.
-
-    Args:
-        recording: Measured signals and commands.
-        program: Compiled effects of the vessel.
-        shared_noise: Sensor noise (sd by family) that all recordings share; None: this one's own.
-        noise_ratio: Noise of this recording in shared levels, by family, where it is not specified.
-        config: Settings of the diagnosis.
-
-    Raises:
-        BadInput: A column is missing that the vessel needs, or too few rows remain.
-    """
-    vessel = program.vessel
-    axes = dof_in_state_order(vessel)
-    where = recording.origin
-    found, families, codes = list[Signal](), list[str](), list[int]()
-    for signal in motion_signals(vessel.dof):
-        if signal.column in recording.signals:
-            found.append(signal)
-            families.append(signal.noise)
-            codes.append(axes.index(signal.axis) + signal.rate * len(axes))
-    columns = tuple(signal.column for signal in found)
-    _check_columns(recording, vessel, found)
-    if len(recording) < FEWEST_IN_PART:
-        raise BadInput(
-            f"{where}: {recording.name} has {len(recording)} rows to use; at least "
-            f"{FEWEST_IN_PART} are needed"
-        )
-    measured = np.column_stack(list(map(recording.signals.__getitem__, columns)))
-    own = specified_noise(recording)
-    shared = shared_noise or NOISE | own
-    scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
-    commands = np.zeros((len(recording), 1))
-    if vessel.inputs:
-        signals = _with_leading_samples(recording.t, recording.signals, vessel)
-        commands = clipped_recorded_commands(vessel, signals, len(recording))
-        if recording.orders is None:
-            commands = interpolate_measured_inputs(commands, measured_input_indices(vessel))
-    facts = merged_facts(vessel, recording)
-    command_times, command_values = _commands_at_own_times(recording, vessel)
-    mapped = MappedRecording(
-        name=recording.name,
-        program=program,
-        times=np.ascontiguousarray(recording.t),
-        measured=np.ascontiguousarray(measured),
-        families=tuple(families),
-        signals=columns,
-        codes=np.array(codes),
-        commands=np.ascontiguousarray(commands),
-        values=parameter_values(program, facts),
-        noise_scale=scale | dict(noise_ratio or {}),
-        facts=facts,
-        command_times=command_times,
-        command_values=command_values,
-        input_noise=input_noise_density(vessel, recording, axes, config.load),
-        groups=recording.notes.groups,
-        config=config.filter,
-    )
-    if "surge" in axes:
-        speed = _speed_of_share(mapped, config.load.fast_share)
-        if speed > config.load.fastest_froude * np.sqrt(GRAVITY * vessel.length):
-            raise BadInput(
-                f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of "
-                f"{vessel.length:g} m; are they in m?"
-            )
-    return mapped
-
-
-def _speed_of_share(mapped: MappedRecording, share: float) -> float:
-    """Speed [m/s] along x or y that a share of the rows exceeds; rms of recorded velocities."""
-    axes = dof_in_state_order(mapped.program.vessel)
-    speeds = []
-    for c, code in enumerate(mapped.codes.tolist()):
-        recorded = np.isfinite(mapped.measured[:, c])
-        if code < len(axes) and axes[code] in ("surge", "sway") and recorded.any():
-            rates = _rates_of_change(
-                mapped.times[recorded], mapped.measured[recorded, c], mapped.config
-            )
-            if len(rates):
-                speeds.append(float(np.quantile(np.abs(rates), 1.0 - share)))
-    if speeds:
-        return max(speeds)
-    return float(np.sqrt(mapped.initial_state_prior.covariance[len(axes), len(axes)]))
-
-
-def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]) -> None:
-    """Raise BadInput for a column that is missing."""
-    missing = []
-    if "yaw" in vessel.dof and "psi_rad" not in recording.signals:
-        missing = ["psi_rad"]
-    missing = missing or _missing_inputs(recording, vessel)
-    if not missing and all(s.rate for s in found):
-        missing = [motion_signals(vessel.dof)[0].column]
-    if missing:
-        raise BadInput(
-            f"{recording.origin}: column {missing[0]} is missing, without which "
-            f"{vessel.name} cannot be followed"
-        )
-
-
 def command_changes(times: Array, commands: Array) -> tuple[Array, Array]:
     """Reduce sampled commands to the rows at which they change.
 
@@ -848,32 +735,6 @@ def command_changes(times: Array, commands: Array) -> tuple[Array, Array]:
     """
     new = np.append(True, (np.diff(commands, axis=0) != 0.0).any(axis=1))
     return np.ascontiguousarray(times[new]), np.ascontiguousarray(commands[new])
-
-
-def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
-    """Commands at their own times where a recording has them more often than rows, else empty."""
-    if recording.orders is None or not vessel.inputs:
-        return np.zeros(0), np.zeros((0, 0))
-    t = recording.orders.t
-    signals = _with_leading_samples(t, recording.orders.signals, vessel)
-    commands = clipped_recorded_commands(vessel, signals, len(t))
-    return command_changes(t, interpolate_measured_inputs(commands, measured_input_indices(vessel)))
-
-
-def _with_leading_samples(
-    t: Array, signals: Mapping[str, Array], vessel: Vessel
-) -> dict[str, Array]:
-    """Signals in which those that a law filters lead by the filter's delay and by one row.
-
-    The law moves to a new sample within the time of one row, so that it reaches it at its own time.
-    """
-    moved = dict(signals)
-    if len(t) > 1:
-        following = np.append(t[1:], 2.0 * t[-1] - t[-2])
-        for name, lead in vessel.filtered_readings.items():
-            if name in signals:
-                moved[name] = np.interp(following + lead, t, signals[name])
-    return moved
 
 
 def hull_time_scales(
@@ -910,172 +771,3 @@ def hull_time_scales(
             largest_step = min(largest_step, float(step))
     decay_rate = float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max())
     return HullMotion(decay_rate, largest_step)
-
-
-def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:
-    """Return all parameter values of a vessel program as an array, with facts of a run put in.
-
-    The parameters of all effects come first, then mass, mass centre and inertias of the hull.
-    Stochastic forces have no fixed realisation here: the filter estimates it, a free run omits it.
-
-    Args:
-        program: Compiled effects of the vessel.
-        facts: Facts of the run by name (`Effect.facts`).
-    """
-    values = np.append(program.values(), program.body)
-    for effect in program.effects:
-        if isinstance(effect, RandomForce):
-            values[program.parameter_index(effect.name, "realisation")] = 0.0
-        for fact, names in type(effect).facts.items():
-            for name, x in zip(names, facts.get(fact, ()), strict=False):
-                values[program.parameter_index(effect.name, name)] = x
-    return values
-
-
-def _missing_inputs(recording: Recording, vessel: Vessel) -> list[str]:
-    """Readings that are not recorded, and actuators whose command is not (PWM drives thrust).
-
-    An actuator is stated by all columns of which one is needed.
-    """
-    missing = []
-    for actuator in vessel.actuators:
-        commands = [name for name in vessel.commands if _drives(vessel, name, actuator)]
-        columns = list(dict.fromkeys((*commands, actuator)))
-        if not any(name in recording.signals for name in columns):
-            missing.append(" or ".join(columns))
-    measured = dict.fromkeys((*vessel.readings, *vessel.feeding_measurements))
-    return missing + [name for name in measured if name not in recording.signals]
-
-
-def _drives(vessel: Vessel, command: str, actuator: str) -> bool:
-    """Whether a channel effect of the vessel converts this command into that actuator."""
-    return any(
-        vessel.command_for_actuator(effect, actuator) == command for effect in vessel.effects
-    )
-
-
-def shared_noise(
-    vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
-) -> dict[str, float]:
-    """Return the sensor noise that all recordings share, as standard deviations by noise family.
-
-    The notes of the first recording take precedence, then the vessel file, then an estimate from
-    the data.
-
-    Args:
-        vessel: Vessel of the recordings.
-        recordings: Recordings that are fitted.
-        config: Settings of the diagnosis.
-
-    Raises:
-        BadInput: The notes specify a noise level out of range.
-    """
-    noise = dict(NOISE)
-    for family in NOISE:
-        sensed = priors.estimate_sensor_noise(vessel, recordings, family, config.load)
-        if sensed:
-            noise[family] = sensed
-    noise |= {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
-    return noise | specified_noise(recordings[0])
-
-
-def relative_noise(
-    vessel: Vessel,
-    recordings: Sequence[Recording],
-    recording: Recording,
-    config: DiagnosisConfig = DEFAULT,
-) -> dict[str, float]:
-    """Return the ratio of one recording's sensor noise to that of all recordings, by noise family.
-
-    Only families are included in which it differs a lot. An exact log and one made by a camera must
-    not be given the same noise, because a free run starts at the state that its recording shows.
-
-    Args:
-        vessel: Vessel of the recordings.
-        recordings: Recordings that are fitted.
-        recording: Recording that is compared with them.
-        config: Settings of the diagnosis.
-    """
-    ratios = {}
-    limit = config.load.noise_ratio
-    for family in NOISE:
-        if family in recording.notes.noise or family in vessel.diagnosis.noise:
-            continue
-        own = priors.estimate_sensor_noise(vessel, [recording], family, config.load)
-        common = priors.estimate_sensor_noise(vessel, recordings, family, config.load)
-        if own and common and not 1.0 / limit < own / common < limit:
-            ratios[family] = own / common
-    return ratios
-
-
-def specified_noise(recording: Recording) -> dict[str, float]:
-    """Return the sensor noise that a recording's notes specify, as standard deviations by family.
-
-    Raises:
-        BadInput: A level is out of range.
-    """
-    noise = recording.notes.noise
-    for family, sd in noise.items():
-        if not 0 < sd < HUGE:
-            raise BadInput(
-                f"{recording.origin}: noise {family} = {sd:g}; allowed is more than 0, at most "
-                f"{HUGE:g}"
-            )
-    return noise
-
-
-def merged_facts(vessel: Vessel, recording: Recording) -> dict[str, Any]:
-    """Return the facts known about a recording: those of the vessel file, overridden by its notes.
-
-    Facts are for example the forward speed, or the walls of the tank.
-    """
-    return {**vessel.diagnosis.facts, **recording.notes.facts}
-
-
-def prior_noise_levels(
-    vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
-) -> NoiseLevels:
-    """Return the assumed levels of sensor noise and of the latent (unmodelled) force before a fit.
-
-    The notes of the first recording take precedence over the rules of the configuration.
-
-    Args:
-        vessel: Vessel of the recordings.
-        recordings: Recordings that are fitted.
-        config: Settings of the diagnosis.
-
-    Raises:
-        BadInput: The notes specify a level out of range.
-    """
-    axes, recording = dof_in_state_order(vessel), recordings[0]
-    where, notes = recording.origin, recording.notes.ambient
-    specified = notes.get("force_rms", {})
-    if not isinstance(specified, Mapping):
-        named = notes.get("axes", axes)
-        if len(named) != len(specified):
-            raise BadInput(
-                f"{where}: ambient.force_rms = {specified}; allowed are {len(named)} numbers, of "
-                f"{', '.join(named)} in turn"
-            )
-        specified = dict(zip(named, specified, strict=True))
-    by_rule = priors.assumed_disturbance(vessel, config.load)
-    force = np.array([float(specified.get(axis, by_rule[axis])) for axis in axes])
-    for axis, rms in zip(axes, force.tolist(), strict=True):
-        if not 0 < rms < HUGE:
-            raise BadInput(
-                f"{where} on {vessel.name}: ambient force in {axis} = {rms:g}, what is tolerated; "
-                f"allowed is more than 0, at most {HUGE:g}"
-            )
-    usual = priors.assumed_correlation_time(vessel, config.load)
-    time_constant = float(notes.get("time_constant_s", usual))
-    if not 0 < time_constant < HUGE:
-        raise BadInput(
-            f"{where}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
-            f"at most {HUGE:g}"
-        )
-    noise = shared_noise(vessel, recordings, config)
-    white = np.zeros(0)
-    if measured_force_mask(vessel, axes).any():
-        share = config.load.input_noise_time * time_constant
-        white = np.where(measured_force_mask(vessel, axes), share * force**2, 0.0)
-    return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force, white)

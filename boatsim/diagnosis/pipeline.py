@@ -44,7 +44,7 @@ from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.divergence import cannot_follow_recordings
 from boatsim.diagnosis.evaluation import Evaluation, compare_models
 from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
@@ -57,6 +57,7 @@ from boatsim.diagnosis.recalibration import (
     fix_undetermined_coefficients,
     predicts_worse,
 )
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
 from boatsim.diagnosis.search.ranking import (
     Baseline,

@@ -16,18 +16,13 @@ from boatsim.diagnosis.candidates import (
 )
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.filter import (
-    MappedRecording,
-    NoiseLevels,
-    map_recording,
-    prior_noise_levels,
-    relative_noise,
-    shared_noise,
-)
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.near_track import small_track_fact
+from boatsim.diagnosis.prior_noise import prior_noise_levels, relative_noise, shared_noise
 from boatsim.diagnosis.problem import Problem, check_uncertain_coefficients
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.work import WorkCount
 from boatsim.physics.facts import BEGIN
 from boatsim.physics.program import Program

@@ -7,10 +7,11 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import program_to_replay
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel

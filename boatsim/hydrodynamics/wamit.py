@@ -61,29 +61,7 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
     Raises:
         BadInput: A file is missing or has another form.
     """
-    rows = _read_numbers(path, COLUMNS - 1)
-    infinite = np.full((6, 6), np.nan)
-    found: dict[float, Array] = {}
-    for row in rows:
-        period, i, j = row[0], _axis(row[1], path), _axis(row[2], path)
-        size = scale.density * scale.length ** _power(i, j)
-        if period == 0.0:
-            infinite[i, j] = row[3] * size
-        elif period > 0.0:
-            if len(row) < COLUMNS:
-                raise BadInput(f"{path}: a period of {period:g} s has no damping")
-            w = 2.0 * np.pi / period
-            matrices = found.setdefault(w, np.zeros((2, 6, 6)))
-            matrices[:, i, j] = row[3] * size, row[4] * size * w
-    if len(found) < 3:
-        raise BadInput(f"{path}: at least three periods are required")
-    frequency = np.array(sorted(found))
-    added_mass = to_sname(np.array([found[w][0] for w in frequency]))
-    damping = to_sname(np.array([found[w][1] for w in frequency]))
-    if np.isnan(infinite).all():
-        infinite = estimated_infinite_added_mass(frequency, added_mass, damping)
-    else:
-        infinite = to_sname(np.nan_to_num(infinite))
+    frequency, added_mass, damping, infinite = read_wamit_radiation(path, scale)
     heading, excitation = _read_excitation(path, frequency, scale)
     drift, drift_of = _read_drift(path, frequency, heading, scale)
     pairs, file = None, pairs_next_to(path)
@@ -107,6 +85,46 @@ def read_wamit(path: Path, scale: OutputScale) -> Coefficients:
         drift_of=drift_of,
         drift_pairs=pairs,
     )
+
+
+def read_wamit_radiation(path: Path, scale: OutputScale) -> tuple[Array, Array, Array, Array]:
+    """Read added mass and damping alone.
+
+    Args:
+        path: NAME.1.
+        scale: Dimensions that the file does not contain.
+
+    Returns:
+        Frequencies (N,) [rad/s], added mass and damping (N, 6, 6), and the added mass at infinite
+        frequency (6, 6), which is estimated if the file lacks it.
+
+    Raises:
+        BadInput: The file is missing or has another form.
+    """
+    rows = _read_numbers(path, COLUMNS - 1)
+    infinite = np.full((6, 6), np.nan)
+    found: dict[float, Array] = {}
+    for row in rows:
+        period, i, j = row[0], _axis(row[1], path), _axis(row[2], path)
+        size = scale.density * scale.length ** _power(i, j)
+        if period == 0.0:
+            infinite[i, j] = row[3] * size
+        elif period > 0.0:
+            if len(row) < COLUMNS:
+                raise BadInput(f"{path}: a period of {period:g} s has no damping")
+            w = 2.0 * np.pi / period
+            matrices = found.setdefault(w, np.zeros((2, 6, 6)))
+            matrices[:, i, j] = row[3] * size, row[4] * size * w
+    if len(found) < 3:
+        raise BadInput(f"{path}: at least three periods are required")
+    frequency = np.array(sorted(found))
+    added_mass = to_sname(np.array([found[w][0] for w in frequency]))
+    damping = to_sname(np.array([found[w][1] for w in frequency]))
+    if np.isnan(infinite).all():
+        infinite = estimated_infinite_added_mass(frequency, added_mass, damping)
+    else:
+        infinite = to_sname(np.nan_to_num(infinite))
+    return frequency, added_mass, damping, infinite
 
 
 def _power(i: int, j: int) -> int:

@@ -20,12 +20,13 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
 from boatsim.diagnosis.loading import open_recording_parts
 from boatsim.diagnosis.output import patched_vessel
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel

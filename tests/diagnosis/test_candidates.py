@@ -383,3 +383,23 @@ def test_walls_that_nobody_states_are_not_tried_and_not_assumed() -> None:
         match="trial_boat: wall_effect needs x_low: state it in its table, or walls_m among",
     ):
         vessel.load_vessel("trial_boat", extra=[{"use": "wall_effect", "damping_rise": 1.0}])
+
+
+def test_candidate_on_a_channel_that_the_vessel_itself_does_not_use_is_not_tried() -> None:
+    """Such a channel is no signal of the compiled program."""
+    boat = vessel.Vessel.from_effects(
+        name="measures_a_wave",
+        dof=("surge", "sway", "yaw"),
+        length=1.2,
+        beam=0.4,
+        draught=0.1,
+        body={"mass": 10.0, "roll_inertia": 0.2, "yaw_inertia": 1.0},
+        effects=[{"use": "linear_damping", "surge": 4.0, "sway": 20.0, "yaw": 4.0}],
+        channels={},
+        measured={"wave_in_m": {}},
+        diagnosis={"also": [{"use": "wave_drift", "on": {"elevation": "wave_in_m"}}]},
+    )
+    library = candidate_library(boat)
+    assert "wave_drift" not in library.tested_names
+    assert "wave_in_m" in library.inapplicable["wave_drift"]
+    assert Program(boat, library.compiled_effects).module

@@ -12,7 +12,8 @@ from real_boat import Real, recorded
 
 from boatsim.diagnosis import correlation_time, pipeline, priors
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.prior_noise import prior_noise_levels
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel

@@ -10,8 +10,9 @@ import pytest
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline, select_effects
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, load_vessel

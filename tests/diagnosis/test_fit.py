@@ -9,8 +9,9 @@ from jet_craft import Craft, sailed
 
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.coordinate_search import maximize
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import broyden_update
+from boatsim.diagnosis.prior_noise import prior_noise_levels
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 

@@ -9,11 +9,12 @@ import pytest
 from pushed_boat import push, sail
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.loading import vessel_of_recording_file
 from boatsim.diagnosis.output.files import write_diagnosis
 from boatsim.diagnosis.pipeline import diagnose
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.errors import BadInput
 from boatsim.physics import vessel

@@ -14,9 +14,10 @@ from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
 from boatsim.diagnosis.checks.rest import intervals_at_rest
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import NoiseLevels, map_recording
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.input_noise import input_noise_density, interpolate_measured_inputs
 from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, TimedCommands

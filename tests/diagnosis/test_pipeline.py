@@ -16,13 +16,10 @@ from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.answer.parameters import parameter_key
 from boatsim.diagnosis.candidates import program_with_candidates
-from boatsim.diagnosis.filter import (
-    NoiseLevels,
-    free_run_segments,
-    map_recording,
-    prior_noise_levels,
-)
+from boatsim.diagnosis.filter import NoiseLevels, free_run_segments
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import froude_scale
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import effect_reference, load_class

@@ -9,8 +9,9 @@ from pushed_boat import BOAT, COMMANDS, DAMPING, Missing, sail
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.output.patched_vessel import write_patched_vessel
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.recalibration import (
     decide_recalibration,
@@ -18,6 +19,7 @@ from boatsim.diagnosis.recalibration import (
     undetermined_by_simulations,
     undetermined_coefficients,
 )
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.diagnosis.simulated_information import independent_count
 from boatsim.physics.base import Array

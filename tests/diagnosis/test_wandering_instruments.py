@@ -10,12 +10,9 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.candidates import candidate_library, program_with_candidates
-from boatsim.diagnosis.filter import (
-    MappedRecording,
-    NoiseLevels,
-    map_recording,
-)
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
 from boatsim.diagnosis.filter_arguments import inertia_with_added_mass
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import first_invalid_fact

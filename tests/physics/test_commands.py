@@ -10,7 +10,7 @@ from boats import PLANAR, planar, written
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.diagnosis.filter import map_recording
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.commands import clipped_commands, clipped_recorded_commands

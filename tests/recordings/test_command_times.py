@@ -10,7 +10,9 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import map_recording, relative_noise, rigid_body_values
+from boatsim.diagnosis.filter import rigid_body_values
+from boatsim.diagnosis.prior_noise import relative_noise
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, VesselNumbers

@@ -6,12 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boatsim.hydrodynamics.computation import HullMesh
 from boatsim.physics.particulars import GRAVITY
 from validation.waves import dtmb5415
 from validation.waves.hulls import write_stl
-from validation.waves.met_diffraction import Met
-from validation.waves.slow_table import SlowTable, Wave
 
 # A box around the mass centre of the ship, whose bottom is the lowest point of the mesh
 BREADTH, TOP = 20.0, 13.0  # [m]
@@ -91,48 +88,6 @@ def test_wave_met_at_a_frequency_obeys_dispersion_and_the_speed(speed: float) ->
         )
     # waves of the depth of the tank and less are those of deep water
     assert dtmb5415.met_wave(12.0, 0.0).number == pytest.approx(12.0**2 / GRAVITY, rel=1e-6)
-
-
-class Rigid:
-    """A table whose motion is its excitation."""
-
-    def excitation(self, wave: Wave) -> np.ndarray:
-        """Heave and pitch without diffraction at the frequency of encounter."""
-        return np.array([1.0 + 0.0j, 0.5j])
-
-    def forced(self, wave: Wave, method: str, excitation: np.ndarray) -> np.ndarray:
-        """The excitation."""
-        return excitation
-
-
-def test_diffraction_at_the_frequency_of_encounter_takes_the_place_of_that_of_the_wave(
-    box: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[Met] = []
-
-    def forces(hull: HullMesh, waves: list[Met]) -> np.ndarray:
-        """Heave 0.25 and pitch 0.1 i at the frequency of the wave, 0.5 and 0.3 i at encounter."""
-        asked.extend(waves)
-        found = np.zeros((len(waves), 2, 6), dtype=np.complex128)
-        found[:, 0, 2], found[:, 1, 2] = 0.25, 0.5
-        found[:, 0, 4], found[:, 1, 4] = 0.1j, 0.3j
-        return found
-
-    monkeypatch.setattr(dtmb5415, "diffraction_forces", forces)
-    table: SlowTable = Rigid()  # type: ignore[assignment]
-    rows = dtmb5415.met_motions(box, table)
-    assert len(rows) == len(asked) == 18
-    for row, met in zip(rows, asked, strict=True):
-        assert dtmb5415.LONG <= row.ratio <= dtmb5415.RESONANT and row.froude > 0.0
-        assert met.encounter == pytest.approx(2.0 * np.pi * row.encounter)
-        number = 2.0 * np.pi / (row.ratio * dtmb5415.MODEL_LENGTH)
-        speed = row.froude * sqrt(GRAVITY * dtmb5415.MODEL_LENGTH)
-        # -U / (i w) times the heave force, which is 0.5
-        moment = 0.5 * speed / met.encounter
-        heave = [one[0] for one in row.found]
-        pitch = [one[1] * number for one in row.found]
-        assert heave == pytest.approx([1.0, 1.25, 1.25])
-        assert pitch == pytest.approx([0.5, 0.7, 0.7 + moment])
 
 
 def motion(froude: float, ratio: float, error: float) -> dtmb5415.Motion:

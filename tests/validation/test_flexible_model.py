@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.table import Recording

@@ -7,22 +7,19 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.hydrodynamics.response import Ballast, floating_response
 from boatsim.physics.base import AXES
 from boatsim.physics.coefficients.files import read_coefficients
 from boatsim.physics.particulars import GRAVITY
 from validation.waves import kcs
-from validation.waves.hulls import write_obj
-from validation.waves.loft import Panels, Station, half_breadth_of, hydrostatics, loft, section_area
-from validation.waves.met_diffraction import Met, diffraction_forces
-from validation.waves.moving_hull import (
+from validation.waves.hull_at_speed import (
+    HullAtSpeed,
     Loading,
-    MovingHull,
     Wave,
     radiated_force,
     undisturbed_heave,
 )
+from validation.waves.loft import Panels, Station, half_breadth_of, hydrostatics, loft, section_area
 from validation.waves.response import DEPTH, INERTIA, OTTER
 from validation.waves.ship_speed import METHODS, radiation, speed_terms
 
@@ -216,7 +213,7 @@ def test_frequency_of_encounter_is_that_of_waves_met_by_a_moving_hull() -> None:
         assert one.speed / np.sqrt(GRAVITY * kcs.LENGTH) == pytest.approx(0.26, abs=0.002)
 
 
-def floating_catamaran(roll_damping: float) -> tuple[MovingHull, Ballast]:
+def floating_catamaran(roll_damping: float) -> tuple[HullAtSpeed, Ballast]:
     """The catamaran of the Otter's particulars, with its centre of buoyancy at the origin."""
     found = read_coefficients(OTTER)
     found = replace(found, buoyancy=found.buoyancy * np.array([0.0, 1.0, 1.0]))
@@ -226,7 +223,7 @@ def floating_catamaran(roll_damping: float) -> tuple[MovingHull, Ballast]:
     ballast = Ballast(DEPTH, (roll, pitch, yaw), roll_damping)
     height = float(found.restoring[3, 3]) / (mass * GRAVITY) + DEPTH
     loading = Loading(DEPTH, height, (roll, pitch, yaw), roll_damping)
-    return MovingHull(found, loading, np.zeros((1, 3, 3)), 0.0), ballast
+    return HullAtSpeed(found, loading, np.zeros((1, 3, 3)), 0.0), ballast
 
 
 def test_motion_at_rest_is_that_of_the_response_about_the_waterline() -> None:
@@ -257,32 +254,6 @@ def test_held_axes_do_not_move_and_viscous_damping_makes_roll_smaller() -> None:
     assert second[[2, 4]] == pytest.approx(first[[2, 4]], rel=1e-9)
 
 
-def test_diffraction_at_the_frequency_of_the_wave_is_that_of_the_excitation(
-    tmp_path: Path,
-) -> None:
-    pytest.importorskip("capytaine")
-    pytest.importorskip("trimesh")
-    stations = wall_sided(40.0, 6.0, 21)
-    triangles = loft(stations, DRAUGHT, Panels(16, 4, 2))
-    path = tmp_path / "hull.obj"
-    write_obj(path, triangles, "hull")
-    mesh = HullMesh(path, DRAUGHT, origin=20.0, density=DENSITY)
-    wave = Wave(40.0, 0.75 * np.pi, 0.0)
-    still, met = diffraction_forces(mesh, [Met(wave.frequency, wave.frequency, wave.direction)])[0]
-    assert met == pytest.approx(still, rel=1e-9)
-    directions = [wave.direction]
-    rows = run_capytaine(mesh, [wave.frequency], directions, lambda stage, share: None)
-    found = coefficients_of_rows(rows, mesh, directions)
-    wet = triangles - np.array([20.0, 0.0, 0.0])
-    heave = found.excitation[0, 0, 2] - undisturbed_heave(wet, wave, DENSITY)
-    assert still[2] == pytest.approx(heave, rel=0.03)
-    faster = diffraction_forces(mesh, [Met(wave.frequency, 1.5 * wave.frequency, wave.direction)])[
-        0
-    ]
-    assert faster[0] == pytest.approx(still, rel=1e-9)
-    assert abs(faster[1][2] - still[2]) > 0.05 * abs(still[2])
-
-
 class Following:
     """A hull that follows the surface of a wave at its mass centre."""
 
@@ -294,7 +265,7 @@ class Following:
         free: tuple[str, ...],
         method: str,
         diffraction: bool = False,
-        change: np.ndarray | None = None,
+        excitation: np.ndarray | None = None,
     ) -> np.ndarray:
         """Heave down by the elevation, roll and pitch by its slopes."""
         found = np.zeros(6, dtype=np.complex128)
@@ -305,7 +276,7 @@ class Following:
 
 
 def test_hull_that_follows_the_surface_has_unit_motions_and_the_phase_of_the_wave() -> None:
-    following: MovingHull = Following()  # type: ignore[assignment]
+    following: HullAtSpeed = Following()  # type: ignore[assignment]
     for row in kcs.motions(following, [np.zeros(6, dtype=np.complex128)] * 10):
         angle = np.radians(row.angle)
         expected = {"heave": 1.0, "roll": abs(np.sin(angle)), "pitch": abs(np.cos(angle))}

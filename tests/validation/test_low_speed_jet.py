@@ -9,8 +9,8 @@ import pytest
 from low_speed_boat import Real, recorded
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.recordings import table as recording
 from boatsim.simulate import scenario
 from boatsim.simulate.run_files import run_into_folder

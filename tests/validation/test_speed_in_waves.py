@@ -15,6 +15,7 @@ from validation.waves.ship_speed import (
     radiation,
     speed_terms,
 )
+from validation.waves.speed_diffraction import MovingHull
 
 # The S-175 by VERES 4.02, MSS toolbox (T. I. Fossen, MIT License), s175.mat of July 2026: added
 # mass and damping at this frequency [rad/s], at rest and at this speed [m/s]; SI units
@@ -88,7 +89,8 @@ def test_heave_at_speed_is_near_that_of_model_tests(tmp_path: Path) -> None:
     pytest.importorskip("capytaine")
     pytest.importorskip("trimesh")
     table = wigley_speed.slow_table(tmp_path)
-    rows = wigley_speed.heave_at_speed(table)
+    hull = MovingHull(wigley_speed.write_mesh(tmp_path))
+    rows = wigley_speed.heave_at_speed(table, hull)
     none, body, terms = (
         wigley_speed.mean_error([(row.measured, row.found[k]) for row in rows]) for k in range(3)
     )

@@ -28,12 +28,16 @@ from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, write_csv
 from validation.calibration.bodies.body import Array, Body, Rng
+from validation.calibration.bodies.bucket_jet import bucket_jet
 from validation.calibration.bodies.clipped_orders import clipped_orders
 from validation.calibration.bodies.driven_pendulum import driven_pendulum
 from validation.calibration.bodies.four_thrusters import four_thrusters
 from validation.calibration.bodies.guided_section import guided_section
+from validation.calibration.bodies.heaving_drives import heaving_drives
 from validation.calibration.bodies.hovercraft import hovercraft
 from validation.calibration.bodies.kept_place import kept_place
+from validation.calibration.bodies.rudder_ship import rudder_ship
+from validation.calibration.bodies.turning_drives import turning_drives
 from validation.calibration.table import share
 
 CALIBRATION = 0.03  # relative sd of damping and thrust about the vessel file
@@ -47,6 +51,10 @@ BODIES = {
         kept_place,
         clipped_orders,
         driven_pendulum,
+        turning_drives,
+        heaving_drives,
+        bucket_jet,
+        rudder_ship,
     )
 }
 

@@ -17,11 +17,13 @@ import numpy as np
 
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.correlation_time import select_correlation_time
-from boatsim.diagnosis.filter import MappedRecording, free_run_segments, map_recording, shared_noise
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.prior_noise import shared_noise
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import select_effects
 from boatsim.physics.base import Array, MeasuredMotion, Measurement
 from boatsim.recordings.table import Recording

@@ -25,11 +25,12 @@ import numpy as np
 from boatsim.diagnosis import loading, pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.coordinate_search import maximize
-from boatsim.diagnosis.filter import MappedRecording, free_run_segments, shared_noise
+from boatsim.diagnosis.filter import MappedRecording, free_run_segments
 from boatsim.diagnosis.fit import converge, fit, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import FreeRun, free_runs, rms_errors
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.prior_noise import shared_noise
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel

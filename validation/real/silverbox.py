@@ -28,11 +28,12 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array

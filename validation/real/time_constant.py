@@ -19,8 +19,9 @@ from boatsim.diagnosis.correlation_time import (
     cross_validated_correlation_time,
     cross_validation_errors,
 )
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels, shared_noise
+from boatsim.diagnosis.prior_noise import prior_noise_levels, shared_noise
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import select_effects
 from boatsim.physics.program import Program
 from validation.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free

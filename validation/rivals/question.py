@@ -16,10 +16,11 @@ from boatsim.diagnosis.answer.parameters import parameter_key
 from boatsim.diagnosis.candidates import candidate_library, name_without_prefixes
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_values import drop_repeated_values
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels, shared_noise
 from boatsim.diagnosis.loading import open_recording
 from boatsim.diagnosis.output import patched_vessel
+from boatsim.diagnosis.prior_noise import prior_noise_levels, shared_noise
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics.base import Array, Effect
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel

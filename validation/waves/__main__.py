@@ -19,13 +19,15 @@ from validation.waves import (
     kcs_tables,
     response,
     righting_arms,
+    s175,
     section,
     ship_speed,
+    wamit_ships,
     wigley,
     wigley_pitch,
     wigley_speed,
 )
-from validation.waves.slow_table import SlowTable
+from validation.waves.speed_diffraction import MovingHull
 
 WORK = Path("out/validation/waves")
 STRONG = 0.3  # reflection above which the error of the drift is counted; below the drift is small
@@ -145,6 +147,7 @@ def print_wigley_pitch(folder: Path) -> None:
 def print_wigley_speed(folder: Path) -> None:
     """Print measured and computed heave, damping and loads of a Wigley hull at forward speed."""
     table = wigley_speed.slow_table(folder)
+    hull = MovingHull(wigley_speed.write_mesh(folder))
     print(
         "\nWigley hull III in head waves at forward speed, from coefficients at zero speed, against"
     )
@@ -155,14 +158,20 @@ def print_wigley_speed(folder: Path) -> None:
     print(
         "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
     )
-    print("the diffraction at forward speed too, which panel_wave_loads leaves out")
-    print("  Fn  wave / L  heave   none          body axes     forward speed  diffraction")
-    rows = wigley_speed.heave_at_speed(table)
+    print(
+        "the diffraction at forward speed too, which panel_wave_loads leaves out; encounter: with"
+    )
+    print("the diffraction at the frequency of encounter too")
+    print(
+        "  Fn  wave / L  heave   none          body axes     forward speed diffraction   encounter"
+    )
+    rows = wigley_speed.heave_at_speed(table, hull)
     errors: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
         cells = []
         values = dict(zip(wigley_speed.METHODS, row.found, strict=True))
-        for name, found in (values | {"diffraction": row.diffraction}).items():
+        further = {"diffraction": row.diffraction, "encounter": row.encounter}
+        for name, found in (values | further).items():
             errors.setdefault(name, []).append((row.measured, found))
             cells.append(f"{found:.3f} {100 * (found / row.measured - 1):+4.0f} %")
         print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {row.measured:5.2f}  {'  '.join(cells)}")
@@ -174,22 +183,30 @@ def print_wigley_speed(folder: Path) -> None:
         text = ", ".join(f"{name} {found:.3f}" for name, found in values.items())
         print(f"{row.froude:4.1f}  {row.ratio:8.3f}  {text}")
     print("held hull at Fn 0.3, force over C33 a and moment over k C55 a")
-    print("wave / L  force  zero speed    moment  zero speed    diffraction")
-    loads = wigley_speed.wave_loads(table)
-    for load in loads:
-        force, moment = load.measured
-        own = load.zero_speed[0]
-        cells = [f"{force:.3f}  {own:.3f} {100 * (own / force - 1):+4.0f} %"]
-        cells.append(f" {moment:.3f}")
-        for pair in (load.zero_speed, load.diffraction):
-            cells.append(f"{pair[1]:.3f} {100 * (pair[1] / moment - 1):+4.0f} %")
-        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
-    before = [(load.measured[1], load.zero_speed[1]) for load in loads]
-    after = [(load.measured[1], load.diffraction[1]) for load in loads]
     print(
-        f"mean error of the moment: zero speed {100 * wigley_speed.mean_error(before):.1f} %, "
-        f"diffraction {100 * wigley_speed.mean_error(after):.1f} %"
+        "wave / L  force  zero speed    encounter     moment  zero speed    diffraction   encounter"
     )
+    loads = wigley_speed.wave_loads(table, hull)
+    for load in loads:
+        cells = []
+        for place, pairs in enumerate(
+            ((load.zero_speed, load.encounter), (load.zero_speed, load.diffraction, load.encounter))
+        ):
+            cells.append(f"{' ' * place}{load.measured[place]:.3f}")
+            for pair in pairs:
+                error = pair[place] / load.measured[place] - 1
+                cells.append(f"{pair[place]:.3f} {100 * error:+4.0f} %")
+        print(f"{load.ratio:8.2f}  {'  '.join(cells)}")
+    for place, kind, names in (
+        (0, "force", ("zero_speed", "encounter")),
+        (1, "moment", ("zero_speed", "diffraction", "encounter")),
+    ):
+        words = []
+        for name in names:
+            both = [(load.measured[place], getattr(load, name)[place]) for load in loads]
+            error = 100 * wigley_speed.mean_error(both)
+            words.append(f"{name.replace('_', ' ')} {error:.1f} %")
+        print(f"mean error of the {kind}: {', '.join(words)}")
     print("forced heave at Fn 0.3, on which strip theory has no effect of speed")
     print("w sqrt(L / g)  A33 / rho V               B33 sqrt(L / g) / rho V")
     for one in wigley_speed.forced_heave(table):
@@ -251,6 +268,180 @@ def print_ship_speed(mss: Path) -> None:
             f"largest difference in {axis}: {', '.join(words)}, loads at zero speed "
             f"{100 * worst:.1f} %"
         )
+
+
+def print_lofted_ship(mss: Path, work: Path) -> None:
+    """Print coefficients, loads and motions of a lofted ship next to those of strip theory.
+
+    Args:
+        mss: Folder of the MSS toolbox.
+        work: Working folder.
+    """
+    veres = s175.read_results(mss, work)
+    ship = s175.Ship(mss, work, s175.FINE, veres.coefficients)
+    theirs, mass = veres.coefficients, float(veres.coefficients.body[2, 2])
+    height = float(theirs.stiffness[0, 0, 0, 3, 3]) / (mass * s175.GRAVITY)
+    print("\nContainer ship S-175 of the MSS toolbox, lofted through its offsets, by boundary")
+    print("elements at zero speed and terms of forward speed, against strip theory (VERES 4.02).")
+    print("Tanks and viscous damping in roll are those of VERES")
+    panels = ship.coefficients.source.split(", ")[-2]
+    print(
+        f"{panels}; displaced mass {ship.mass / 1e3:.0f} t, VERES {mass / 1e3:.0f} t; GM "
+        f"{ship.height:.3f} m, VERES {height:.3f} m"
+    )
+    print("at rest, coefficients over those of VERES")
+    print("wave / L    A33    B33    A55    B55")
+    for row in s175.coefficient_rows(ship, veres):
+        shares = [own / other for own, other in zip(row.found, row.published, strict=True)]
+        print(f"{row.ratio:8.2f}  {'  '.join(f'{share:5.2f}' for share in shares)}")
+    print("loads of head waves, force over C33 a and moment over k C55 a; rest: those at rest;")
+    print(
+        "moment: with the moment of the diffraction at the speed; encounter: with the diffraction"
+    )
+    print("at the frequency of encounter too")
+    print("  U m/s  wave / L  force   rest  moment  encounter    moment   rest  moment  encounter")
+    for load in s175.load_rows(ship, veres):
+        cells = []
+        for place in range(2):
+            rest, moment, met = (pair[place] for pair in load.found)
+            cell = f"{load.published[place]:5.3f}  {rest:5.3f}"
+            if load.speed > 0.0:
+                cell += f"  {moment:6.3f}  {met:9.3f}"
+            cells.append(f"{cell:31}")
+        print(f"{load.speed:7.2f}  {load.ratio:8.2f}  {'     '.join(cells)}".rstrip())
+    rows = s175.motions(ship, veres)
+    speeds = sorted({row.speed for row in rows})
+    for speed in speeds:
+        for heading, words in ((s175.HEAD, "head"), (s175.BEAM, "beam")):
+            chosen = [row for row in rows if (row.speed, row.heading) == (speed, heading)]
+            print_lofted_motions(chosen, f"{words} waves at {speed:.2f} m/s")
+    low, high = s175.RESONANT[s175.HEAVE]
+    first, last = s175.RESONANT[s175.ROLL]
+    print(
+        f"errors near resonance, waves of {low:g} to {high:g} L in heave and pitch and of "
+        f"{first:g} to {last:g} L in roll:"
+    )
+    print("number of waves with errors up to 10 %, mean and largest error")
+    print(f"  U m/s  waves  motion  {'  '.join(f'{name:18}' for name in s175.METHODS)}".rstrip())
+    for line in lofted_error_lines(rows, speeds):
+        print(line)
+    coarse = s175.Ship(mss, work, s175.COARSE, veres.coefficients)
+    before = s175.motions(coarse, veres, s175.METHODS[:1])
+    panels = coarse.coefficients.source.split(", ")[-2]
+    changes = []
+    for axis, name in s175.NAMES.items():
+        changes.append(f"{name} {100 * s175.largest_change(before, rows, axis):.1f} %")
+    print(f"largest change of these motions from a mesh of {panels}: {', '.join(changes)}")
+
+
+def print_lofted_motions(rows: list[s175.Motion], words: str) -> None:
+    """Print the motions of a lofted ship in the waves of one direction at one speed.
+
+    Args:
+        rows: Published and computed motions.
+        words: Direction and speed in words.
+    """
+    methods = len(s175.METHODS)
+    if rows[0].heading == s175.BEAM:
+        methods -= 1  # the frequency of encounter is that of the wave
+    if rows[0].speed == 0.0:
+        methods = 1
+    heads = "".join(f"{name:>14}" for name in s175.METHODS[:methods])
+    axes = sorted({row.axis for row in rows})
+    titles = "   ".join(f"{s175.NAMES[axis]:>6}{heads}" for axis in axes)
+    print(f"{words}; motions by VERES, and by boatsim with their errors\nwave / L  {titles}")
+    for ratio in sorted({row.ratio for row in rows}, reverse=True):
+        cells = []
+        for axis in axes:
+            cell = " " * (6 + 14 * methods)
+            for row in rows:
+                if (row.ratio, row.axis) == (ratio, axis):
+                    cell = f"{row.published:6.3f}"
+                    for found in row.found[:methods]:
+                        cell += f"{found:7.3f} {100 * (found / row.published - 1):+4.0f} %"
+            cells.append(cell)
+        print(f"{ratio:8.2f}  {'   '.join(cells)}".rstrip())
+
+
+def lofted_error_lines(rows: list[s175.Motion], speeds: list[float]) -> list[str]:
+    """Return the errors of the motions of a lofted ship in words, and their sums.
+
+    Args:
+        rows: Published and computed motions.
+        speeds: Forward speeds [m/s].
+    """
+    lines = []
+    for speed in speeds:
+        methods = 1 if speed == 0.0 else len(s175.METHODS)
+        within, waves = [0] * methods, 0
+        for heading, words, axes in (
+            (s175.HEAD, "head", (s175.HEAVE, s175.PITCH)),
+            (s175.BEAM, "beam", (s175.HEAVE, s175.ROLL)),
+        ):
+            for axis in axes:
+                cells = []
+                for method in range(methods):
+                    one = s175.errors(rows, speed, heading, axis, method)
+                    within[method] += one.within
+                    cells.append(
+                        f"{one.within:2d} of {one.waves:2d} {100 * one.mean:2.0f} "
+                        f"{100 * one.largest:+3.0f} %"
+                    )
+                waves += one.waves
+                text = "  ".join(f"{cell:18}" for cell in cells)
+                lines.append(f"{speed:7.2f}  {words:5}  {s175.NAMES[axis]:6}  {text}".rstrip())
+        text = "  ".join(f"{f'{count:2d} of {waves}':18}" for count in within)
+        lines.append(f"{speed:7.2f}  all            {text}".rstrip())
+    return lines
+
+
+def print_wamit_ship(mss: Path, work: Path, ship: wamit_ships.Ship) -> None:
+    """Print errors of coefficients and motions of a ship against WAMIT with the same panels.
+
+    Args:
+        mss: Folder of the MSS toolbox.
+        work: Working folder.
+        ship: The ship.
+    """
+    found = wamit_ships.comparison(mss, ship, work)
+    print(
+        f"\n{ship.name} of the MSS toolbox at rest, against WAMIT with the same panels, each as two"
+    )
+    print(f"triangles ({found.panels}); errors [%]")
+    if found.stiffness:
+        words = []
+        for name, (theirs, own) in zip(("C33", "C44", "C55"), found.stiffness, strict=True):
+            words.append(f"{name} {100 * (own / theirs - 1):+.2f} %")
+        print(f"stiffness: {', '.join(words)}")
+    periods = "".join(f"{period:8.2f}" for period in wamit_ships.PERIODS)
+    print(f"period s{periods}")
+    ratios = []
+    for period in wamit_ships.PERIODS:
+        length = s175.GRAVITY * period**2 / (2.0 * np.pi)
+        ratios.append(f"{length / ship.length:8.2f}")
+    print(f"wave / L{''.join(ratios)}")
+    every = []
+    for letter, rows in (("A", found.added_mass), ("B", found.damping)):
+        for (_, name), pairs in zip(wamit_ships.DIAGONAL, rows, strict=True):
+            text = "".join(f"{100 * pair.error:+8.1f}" for pair in pairs)
+            print(f"{letter}{name}     {text}")
+            every += pairs
+    print("motions over the amplitude or the slope of the wave: WAMIT, boatsim, error")
+    titles = "   ".join(f"{words:23}" for _, _, words in wamit_ships.MOTIONS)
+    print(f"period s  {titles}".rstrip())
+    moved = []
+    for place, period in enumerate(wamit_ships.PERIODS):
+        cells = []
+        for pairs in found.motions:
+            one = pairs[place]
+            cells.append(f"{one.published:6.3f}  {one.found:6.3f} {100 * one.error:+5.1f} %")
+            moved.append(one)
+        print(f"{period:8.2f}  {'   '.join(cells)}")
+    limit = f"{100 * wamit_ships.CLOSE:.0f} %"
+    print(
+        f"within {limit}: {wamit_ships.within(every)} of {len(every)} coefficients, "
+        f"{wamit_ships.within(moved)} of {len(moved)} motions"
+    )
 
 
 def print_ship_arms(navaltoolbox: Path) -> None:
@@ -315,10 +506,11 @@ def print_ship_motions(navaltoolbox: Path) -> None:
     print("the slope of the wave; none: no effect of speed but the frequency of encounter; body:")
     print("equations of motion in body axes; terms: with the terms of forward speed; diffr.: with")
     print("the moment of the diffraction at speed too; damp.: as terms, but the damping of pitch")
-    print("at zero speed")
-    heads = "none   body   terms  diffr. damp."
-    print(f"  Fn    Hz  wave / L  heave  {heads}    pitch  {heads}")
-    motions = dtmb5415.motions(table)
+    print("at zero speed; enc.: as terms, with the diffraction at the frequency of encounter")
+    heads = "none   body   terms  diffr. damp.  enc. "
+    print(f"  Fn    Hz  wave / L  heave  {heads}    pitch  {heads}".rstrip())
+    met = dtmb5415.met_excitation(navaltoolbox)
+    motions = dtmb5415.motions(table, met)
     for motion in motions:
         text = []
         for place, measured in enumerate(motion.measured):
@@ -327,7 +519,7 @@ def print_ship_motions(navaltoolbox: Path) -> None:
         start = f"{motion.froude:4.2f} {motion.encounter:5.3f}  {motion.ratio:8.2f}"
         print(f"{start}  {'    '.join(text)}")
     quarter = 0.25 * dtmb5415.MODEL_LENGTH
-    light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter))
+    light = dtmb5415.motions(dtmb5415.table_of_model(navaltoolbox, found, quarter), met)
     print("number of waves with errors up to 10 %, and mean and largest error")
     print(
         "gyradius  method         heave, 1 to 2 L     pitch, 1 to 2 L     heave, from 1 L on  "
@@ -337,39 +529,6 @@ def print_ship_motions(navaltoolbox: Path) -> None:
         start = f"{gyradius / dtmb5415.MODEL_LENGTH:6.2f} L"
         for line in ship_error_lines(own_rows):
             print(f"{start}  {line}")
-    print_met_diffraction(navaltoolbox, table)
-
-
-def print_met_diffraction(navaltoolbox: Path, table: SlowTable) -> None:
-    """Print motions of a ship's model with the diffraction at the frequency of encounter.
-
-    Args:
-        navaltoolbox: Folder of navaltoolbox-lib.
-        table: The model.
-    """
-    rows = dtmb5415.met_motions(navaltoolbox, table)
-    print(
-        "the same waves of 1 to 2 L with the terms of forward speed; met: with the diffraction at"
-    )
-    print(
-        "the frequency of encounter, which strip theory takes; moment: with its moment at speed too"
-    )
-    print("  Fn  wave / L  heave  terms  met    moment    pitch  terms  met    moment")
-    for row in rows:
-        text = []
-        for place, measured in enumerate(row.measured):
-            cells = [f"{pair[place]:.3f}" for pair in row.found]
-            text.append(f"{measured:.3f}  {'  '.join(cells)}")
-        print(f"{row.froude:4.2f}  {row.ratio:8.2f}  {'     '.join(text)}")
-    for method, name in enumerate(dtmb5415.MET_NAMES):
-        words = []
-        for place, axis in enumerate(("heave", "pitch")):
-            one = dtmb5415.errors(rows, place, method, np.inf)
-            words.append(
-                f"{axis} {one.within} of {one.waves} within 10 %, mean {100 * one.mean:.0f} %, "
-                f"largest {100 * one.largest:+.0f} %"
-            )
-        print(f"{name:11}  {'; '.join(words)}")
 
 
 def ship_error_lines(rows: list[dtmb5415.Motion]) -> list[str]:
@@ -514,6 +673,29 @@ def print_section(folder: Path) -> None:
     print(f"waterline: {at_waterline:.2f} s; by the makers' decay tests with sway clamped 1.28 s")
 
 
+def print_mss_hulls(mss: Path | None, work: Path, has_capytaine: bool) -> None:
+    """Print comparisons with the hulls of the MSS toolbox that are there, or why they are skipped.
+
+    Args:
+        mss: Folder of the MSS toolbox; None if it is not given.
+        work: Working folder.
+        has_capytaine: Whether Capytaine is installed.
+    """
+    if mss is None or not has_capytaine:
+        print("hulls of the MSS toolbox: skipped, they need --mss and Capytaine")
+        return
+    if (mss / s175.SHIP).is_file():
+        print_lofted_ship(mss, work)
+    else:
+        print(f"lofted container ship: skipped, {mss / s175.SHIP} is missing")
+    for ship in (wamit_ships.TANKER, wamit_ships.FPSO):
+        path = mss / wamit_ships.SHIPS / ship.name / ship.mesh
+        if path.is_file():
+            print_wamit_ship(mss, work, ship)
+        else:
+            print(f"{ship.name}: skipped, {path} is missing")
+
+
 def main() -> None:
     """Print all comparisons."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -538,6 +720,7 @@ def main() -> None:
         print_ship_speed(given.mss)
     else:
         print("container ship at forward speed: skipped, --mss names the folder of the MSS toolbox")
+    print_mss_hulls(given.mss, folder, has_capytaine)
     toolbox = given.navaltoolbox
     if toolbox is not None and (toolbox / dtmb5415.MESH).is_file():
         print_ship_arms(toolbox)

@@ -18,9 +18,9 @@ from boatsim.physics.hull.floating import LoadedHull, metacentric_heights, right
 from boatsim.physics.hull.mesh import ClosedMesh, read_closed_mesh
 from boatsim.physics.hull.submerged import submerged_part, wetted_triangles
 from boatsim.physics.particulars import GRAVITY
-from validation.waves.met_diffraction import Met, diffraction_forces
 from validation.waves.ship_speed import METHODS
-from validation.waves.slow_table import SlowTable, Wave
+from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
+from validation.waves.speed_diffraction import MetWave, MovingHull
 
 # Mesh of the ship in github.com/NavalToolbox/navaltoolbox-lib, commit 6133809 of January 2026:
 # x ahead of the aft perpendicular, z above the keel
@@ -203,7 +203,7 @@ def upright(hull: LoadedHull) -> tuple[float, float]:
 
 
 def model_mesh(folder: Path) -> HullMesh:
-    """Return the model for the boundary element method, about a point above its mass centre.
+    """Return the hull of the model in the water of its tank.
 
     Args:
         folder: Folder of the repository of NavalToolbox.
@@ -349,16 +349,43 @@ class Motion(NamedTuple):
     found: tuple[tuple[float, float], ...]  # by each of `NAMES`
 
 
-# Further methods, both with the terms of forward speed: with the moment of the diffraction at speed
-# too, and with the damping of pitch at zero speed, as measured on Wigley hulls (`wigley_speed`)
-NAMES = (*METHODS, "diffraction", "damping")
+# Further methods, all with the terms of forward speed: with the moment of the diffraction at speed
+# too, with the damping of pitch at zero speed, as measured on Wigley hulls (`wigley_speed`), and
+# with the excitation of `speed_diffraction`
+NAMES = (*METHODS, "diffraction", "damping", "encounter")
 
 
-def motions(table: SlowTable) -> list[Motion]:
+def met_excitation(folder: Path) -> dict[tuple[float, float], Array]:
+    """Return the excitation with the diffraction at the frequency of encounter.
+
+    Args:
+        folder: Folder of the repository of NavalToolbox.
+
+    Returns:
+        For the Froude number and the frequency of encounter [Hz] of each test at speed, the complex
+        excitation (2,) in heave and pitch per amplitude [N/m, N].
+
+    Raises:
+        BadInput: Capytaine is not installed, or the mesh cannot be read.
+    """
+    hull, found = MovingHull(model_mesh(folder)), {}
+    for froude, points in MEASURED.items():
+        speed = froude * float(np.sqrt(GRAVITY * MODEL_LENGTH))
+        for hertz, _, _ in points:
+            if speed == 0.0:
+                continue
+            wave = met_wave(2.0 * np.pi * hertz, speed)
+            met = MetWave(wave.frequency, wave.encounter, HEAD, speed)
+            found[froude, hertz] = hull.excitation(met)[[HEAVE, PITCH]]
+    return found
+
+
+def motions(table: SlowTable, met: dict[tuple[float, float], Array]) -> list[Motion]:
     """Return measured and computed motions.
 
     Args:
         table: The model.
+        met: Excitation of the tests at speed, by `met_excitation`.
     """
     rows = []
     for froude, points in MEASURED.items():
@@ -370,48 +397,12 @@ def motions(table: SlowTable) -> list[Motion]:
                 found.append(_over_slope(table.heave_and_pitch(wave, method), wave))
             found.append(_over_slope(table.heave_and_pitch(wave, METHODS[-1], True), wave))
             found.append(_over_slope(_with_damping_at_rest(table, wave), wave))
+            force = met.get((froude, hertz), table.excitation(wave))
+            found.append(_over_slope(table.motion_under(wave, METHODS[-1], force), wave))
             ratio = 2.0 * np.pi / wave.number / MODEL_LENGTH
             pair = (measured[0], measured[1])
             rows.append(Motion(froude, hertz, ratio, pair, tuple(found)))
     return rows
-
-
-# The terms of forward speed with the diffraction at the frequency of the wave and at that of
-# encounter, and the latter with its moment at speed
-MET_NAMES = ("terms", "met", "met, moment")
-
-
-def met_motions(folder: Path, table: SlowTable) -> list[Motion]:
-    """Return measured and computed motions at speed near resonance, by each of `MET_NAMES`.
-
-    Args:
-        folder: Folder of the repository of NavalToolbox.
-        table: The model.
-
-    Raises:
-        BadInput: Capytaine is not installed.
-    """
-    waves, rows = [], []
-    for froude, points in MEASURED.items():
-        speed = froude * float(np.sqrt(GRAVITY * MODEL_LENGTH))
-        for hertz, *measured in points:
-            wave = met_wave(2.0 * np.pi * hertz, speed)
-            ratio = 2.0 * np.pi / wave.number / MODEL_LENGTH
-            if froude > 0.0 and LONG <= ratio <= RESONANT:
-                waves.append(wave)
-                rows.append(Motion(froude, hertz, ratio, (measured[0], measured[1]), ()))
-    met = [Met(wave.frequency, wave.encounter, HEAD) for wave in waves]
-    forces = diffraction_forces(model_mesh(folder), met)[:, :, [2, 4]]  # heave and pitch
-    found = []
-    for row, wave, (at_rest, own) in zip(rows, waves, forces, strict=True):
-        force = table.excitation(wave)
-        moment = -wave.speed / (1j * wave.encounter) * own[0]
-        changed = force + own - at_rest
-        pairs = []
-        for one in (force, changed, changed + np.array([0.0, moment])):
-            pairs.append(_over_slope(table.forced(wave, METHODS[-1], one), wave))
-        found.append(row._replace(found=tuple(pairs)))
-    return found
 
 
 def _with_damping_at_rest(table: SlowTable, wave: Wave) -> Array:

@@ -40,28 +40,29 @@ def shell(x: Array, z: Array, half_breadth: Surface, centre: float) -> Array:
         centre: Place of the centre plane to port [m].
     """
     stations, lines = np.meshgrid(x, z, indexing="ij")
-    return both_sides(np.stack([stations, half_breadth(stations, lines), lines], axis=-1), centre)
-
-
-def both_sides(points: Array, centre: float = 0.0) -> Array:
-    """Return the triangles (N, 3, 3) of a surface of four-sided panels and of its mirror image.
-
-    Args:
-        points: Corners of the panels (N, M, 3) [m], z up: x increases along the first axis, and
-            along the second they run from the keel upwards on the port side.
-        centre: Place of the centre plane to port [m], from which y is measured.
-    """
+    y = half_breadth(stations, lines)
     found = []
     for side in (1.0, -1.0):
-        own = points * np.array([1.0, side, 1.0]) + np.array([0.0, centre, 0.0])
-        a, b = own[:-1, :-1], own[1:, :-1]
-        c, d = own[1:, 1:], own[:-1, 1:]
-        first, second = np.stack([a, c, b], axis=2), np.stack([a, d, c], axis=2)
-        triangles = np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+        triangles = grid_triangles(np.stack([stations, centre + side * y, lines], axis=-1))
         if side < 0.0:
             triangles = triangles[:, ::-1]
         found.append(triangles)
     return np.concatenate(found)
+
+
+def grid_triangles(points: Array) -> Array:
+    """Return the triangles (N, 3, 3) between points of a grid.
+
+    They are counter-clockwise seen from port if the first index increases forward and the second
+    one upward.
+
+    Args:
+        points: Points (I, J, 3) [m].
+    """
+    a, b = points[:-1, :-1], points[1:, :-1]
+    c, d = points[1:, 1:], points[:-1, 1:]
+    first, second = np.stack([a, c, b], axis=2), np.stack([a, d, c], axis=2)
+    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
 
 
 def closed_hull(x: Array, z: Array, half_breadth: Surface, centre: float = 0.0) -> Array:

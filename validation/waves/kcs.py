@@ -14,11 +14,11 @@ from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, ru
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.particulars import GRAVITY
+from validation.waves.hull_at_speed import Complex, HullAtSpeed, Loading, Wave
 from validation.waves.hulls import write_obj
 from validation.waves.loft import Hydrostatics, Panels, Station, hydrostatics, loft, section_area
-from validation.waves.met_diffraction import Met, diffraction_forces
-from validation.waves.moving_hull import Complex, Loading, MovingHull, Wave
 from validation.waves.ship_speed import METHODS
+from validation.waves.speed_diffraction import MetWave, MovingHull
 
 # Table of offsets, in github.com/lohith-g-45/Hydrohackathon at commit 0a99ce5b, folder
 # data/external_benchmarks/kcs; it was published by the KRISO and by the workshop of 2015
@@ -202,21 +202,25 @@ def hull_mesh(folder: Path, hull: Hull) -> HullMesh:
     return HullMesh(path, DRAUGHT, origin=float(hull.rest.centre[0]), density=DENSITY)
 
 
-def diffraction_changes(folder: Path, hull: Hull) -> list[Complex]:
-    """Return the change (6,) of the diffraction of each wave of both cases by its encounter.
+def met_excitation(folder: Path, hull: Hull) -> list[Array]:
+    """Return the excitation (6,) of each wave with the diffraction at the frequency of encounter.
 
     Args:
         folder: Working folder.
         hull: The hull.
 
+    Returns:
+        Complex excitation about the waterline, of the waves of both cases [N/m, N].
+
     Raises:
         BadInput: Capytaine is not installed.
     """
-    waves = []
+    moving = MovingHull(hull_mesh(folder, hull))
+    found = []
     for wave in head_waves() + oblique_waves():
-        waves.append(Met(wave.frequency, wave.encounter, wave.direction))
-    forces = diffraction_forces(hull_mesh(folder, hull), waves)
-    return [met - still for still, met in forces]
+        met = MetWave(wave.frequency, wave.encounter, wave.direction, wave.speed)
+        found.append(moving.excitation(met))
+    return found
 
 
 def compute(folder: Path, hull: Hull, waves: list[Wave]) -> Coefficients:
@@ -243,7 +247,7 @@ def usual_loading() -> Loading:
     return Loading(DRAUGHT - KEEL_TO_CENTRE, HEIGHT, gyradii)
 
 
-def moving_hull(hull: Hull, found: Coefficients, loading: Loading) -> MovingHull:
+def hull_at_speed(hull: Hull, found: Coefficients, loading: Loading) -> HullAtSpeed:
     """Return the hull with its coefficients and its mass.
 
     Args:
@@ -251,13 +255,13 @@ def moving_hull(hull: Hull, found: Coefficients, loading: Loading) -> MovingHull
         found: Its coefficients.
         loading: Distribution of its mass.
     """
-    return MovingHull(found, loading, hull.mesh, float(hull.rest.centre[0]))
+    return HullAtSpeed(found, loading, hull.mesh, float(hull.rest.centre[0]))
 
 
 COEFFICIENTS = ("A33", "B33", "A55", "B55", "A44", "B44")
 
 
-def coefficients_without_units(moving: MovingHull, w: float) -> Array:
+def coefficients_without_units(moving: HullAtSpeed, w: float) -> Array:
     """Return added mass over the mass and damping sqrt(L / g) over it (6,).
 
     They are in the order of `COEFFICIENTS`. Those of pitch are divided by the square of the length,
@@ -295,41 +299,39 @@ class Motion(NamedTuple):
     phase: tuple[float, ...]  # [deg] by each of `NAMES`, before the crest at the forward end
 
 
-def motions(
-    moving: MovingHull, changes: list[Complex], oblique: tuple[str, ...] = FOUR
-) -> list[Motion]:
+def motions(moving: HullAtSpeed, met: list[Array], oblique: tuple[str, ...] = FOUR) -> list[Motion]:
     """Return measured and computed motions of both cases.
 
     Args:
         moving: The hull.
-        changes: Changes (6,) of the diffraction of each wave, of `diffraction_changes`.
+        met: Excitation (6,) of each wave, of `met_excitation`.
         oblique: Degrees of freedom that are not held in case 2.11.
     """
     rows, number = [], 0
     for wave, (_, heave, pitch, *phases) in zip(head_waves(), HEAD_MEASURED, strict=True):
         measured = {"heave": (heave, phases[0]), "pitch": (pitch, phases[1])}
-        every = _every_method(moving, wave, UPRIGHT, changes[number])
+        every = _every_method(moving, wave, UPRIGHT, met[number])
         rows += _rows("2.10", wave, every, measured)
         number += 1
     for wave, (_, heave, roll, pitch) in zip(oblique_waves(), OBLIQUE_MEASURED, strict=True):
         measured = {"heave": (heave, np.nan), "roll": (roll, np.nan), "pitch": (pitch, np.nan)}
         if np.isnan(roll):
             del measured["roll"]
-        every = _every_method(moving, wave, oblique, changes[number])
+        every = _every_method(moving, wave, oblique, met[number])
         rows += _rows("2.11", wave, every, measured)
         number += 1
     return rows
 
 
 def _every_method(
-    moving: MovingHull, wave: Wave, free: tuple[str, ...], change: Complex
+    moving: HullAtSpeed, wave: Wave, free: tuple[str, ...], met: Array
 ) -> list[Complex]:
     """Return the motions (6,) by each of `NAMES`, after the crest at the forward perpendicular."""
     ahead = LENGTH - moving.place
     crest = np.exp(1j * wave.number * ahead * np.cos(wave.direction))
     every = [moving.motion(wave, free, method) for method in METHODS]
     every.append(moving.motion(wave, free, METHODS[-1], True))
-    every.append(moving.motion(wave, free, METHODS[-1], True, change))
+    every.append(moving.motion(wave, free, METHODS[-1], True, met))
     return [one * crest for one in every]
 
 
@@ -358,11 +360,11 @@ def _rows(
 
 
 class Computed(NamedTuple):
-    """The ship with its coefficients and the changes of the diffraction by the encounter."""
+    """The ship with its coefficients and its excitation of `met_excitation`."""
 
     hull: Hull
     found: Coefficients
-    changes: list[Complex]
+    met: list[Array]
 
     def motions(self, loading: Loading, oblique: tuple[str, ...] = FOUR) -> list[Motion]:
         """Return measured and computed motions of both cases.
@@ -371,7 +373,7 @@ class Computed(NamedTuple):
             loading: Distribution of the mass.
             oblique: Degrees of freedom that are not held in case 2.11.
         """
-        return motions(moving_hull(self.hull, self.found, loading), self.changes, oblique)
+        return motions(hull_at_speed(self.hull, self.found, loading), self.met, oblique)
 
 
 def chosen(rows: list[Motion], case: str, axis: str, resonant: bool = True) -> list[Motion]:

@@ -40,8 +40,8 @@ def print_ship(folder: Path, work: Path, has_capytaine: bool) -> None:
     waves = kcs.head_waves() + kcs.oblique_waves()
     found = [kcs.compute(work, hull, waves) for hull in hulls]
     print_convergence(hulls, found)
-    changes = kcs.diffraction_changes(work, hulls[-1])
-    print_motions(kcs.Computed(hulls[-1], found[-1], changes))
+    met = kcs.met_excitation(work, hulls[-1])
+    print_motions(kcs.Computed(hulls[-1], found[-1], met))
 
 
 def print_convergence(hulls: list[kcs.Hull], found: list[Coefficients]) -> None:
@@ -56,7 +56,7 @@ def print_convergence(hulls: list[kcs.Hull], found: list[Coefficients]) -> None:
     print(f"w sqrt(L / g)  triangles  {'  '.join(f'{name:>7}' for name in kcs.COEFFICIENTS)}")
     for wave in (kcs.head_waves()[2], kcs.oblique_waves()[2]):
         for hull, own in zip(hulls, found, strict=True):
-            moving = kcs.moving_hull(hull, own, kcs.usual_loading())
+            moving = kcs.hull_at_speed(hull, own, kcs.usual_loading())
             values = kcs.coefficients_without_units(moving, wave.encounter)
             number = wave.encounter * np.sqrt(kcs.LENGTH / GRAVITY)
             cells = "  ".join(f"{value:7.4f}" for value in values)

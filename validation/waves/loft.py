@@ -7,7 +7,7 @@ from scipy.interpolate import PchipInterpolator
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
-from validation.waves.hulls import Surface, both_sides
+from validation.waves.hulls import Surface, grid_triangles
 
 # Half-breadth over the largest one below which a panel lies in the centre plane: a skeg without
 # thickness, or no hull at all
@@ -93,7 +93,7 @@ def loft(stations: list[Station], draught: float, panels: Panels) -> Array:
     y = np.column_stack([side[:, :1] * across, side])
     z = np.concatenate([np.zeros(panels.bottom), height]) - draught
     points = np.stack([np.broadcast_to(x[:, None], y.shape), y, np.tile(z, (len(x), 1))], axis=-1)
-    found = [both_sides(points)]
+    found = [_both_sides(points)]
     for end, forward in ((points[0], False), (points[-1], True)):
         found.append(_flat_end(end, forward))
     triangles = np.concatenate(found)
@@ -120,13 +120,20 @@ def _wetted_ends(stations: list[Station], draught: float) -> tuple[float, float]
     return stations[max(first - 1, 0)].x, stations[min(last + 1, len(wet) - 1)].x
 
 
+def _both_sides(points: Array) -> Array:
+    """Return the triangles (N, 3, 3) of a grid of points to port and of its mirror image."""
+    port = grid_triangles(points)
+    starboard = port[:, ::-1] * np.array([1.0, -1.0, 1.0])
+    return np.concatenate([port, starboard])
+
+
 def _flat_end(end: Array, forward: bool) -> Array:
     """Return the triangles of the flat end between a side of the hull (M, 3) and its mirror."""
     middle = end * np.array([1.0, 0.0, 1.0])
     points = np.stack([middle, end])
     if forward:
         points = points[::-1]
-    return both_sides(points)
+    return _both_sides(points)
 
 
 def hydrostatics(triangles: Array) -> Hydrostatics:

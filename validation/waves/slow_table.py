@@ -103,10 +103,10 @@ class SlowTable:
             method: One of `ship_speed.METHODS`.
             diffraction: Whether the excitation contains the moment of the diffraction at speed.
         """
-        return self.forced(wave, method, self.excitation(wave, diffraction))
+        return self.motion_under(wave, method, self.excitation(wave, diffraction))
 
-    def forced(self, wave: Wave, method: str, excitation: Array) -> Array:
-        """Return the complex motion (2,) per amplitude under an excitation [m/m, rad/m].
+    def motion_under(self, wave: Wave, method: str, excitation: Array) -> Array:
+        """Return the complex motion (2,) per amplitude under a given excitation [m/m, rad/m].
 
         Args:
             wave: The wave.

@@ -4,7 +4,8 @@ The radiation is computed from coefficients at zero speed in three ways: with no
 the frequency of encounter, with the equations in body axes, and with the terms of `forward_speed`
 of `radiation_memory` in addition, which make them those of strip theory. The excitation is that at
 zero speed, with the frequency of encounter; strip theory adds the moment -U / (i w_e) of the
-diffraction force in heave, which `panel_wave_loads` leaves out.
+diffraction force in heave, which `panel_wave_loads` leaves out, and takes the diffraction at the
+frequency of encounter (`speed_diffraction`).
 """
 
 from pathlib import Path
@@ -13,9 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
+from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS
-from validation.waves.slow_table import SlowTable, Wave
+from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
+from validation.waves.speed_diffraction import MetWave, MovingHull
 from validation.waves.wigley import (
     DENSITY,
     DRAUGHT,
@@ -79,6 +82,18 @@ def froude_speed(froude: float) -> float:
     return froude * float(np.sqrt(GRAVITY * LENGTH))
 
 
+def write_mesh(folder: Path) -> HullMesh:
+    """Write the mesh of the hull.
+
+    Args:
+        folder: Working folder.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"wigley_{HULL.name}.obj"
+    write_hull(path, HULL)
+    return HullMesh(path, DRAUGHT, density=DENSITY)
+
+
 def slow_table(folder: Path) -> SlowTable:
     """Return the coefficients of the hull at zero speed.
 
@@ -88,14 +103,22 @@ def slow_table(folder: Path) -> SlowTable:
     Raises:
         BadInput: Capytaine is not installed.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"wigley_{HULL.name}.obj"
-    write_hull(path, HULL)
-    mesh = HullMesh(path, DRAUGHT, density=DENSITY)
+    mesh = write_mesh(folder)
     frequencies = [float(w) for w in np.linspace(LOWEST, HIGHEST, NUMBER)]
     rows = run_capytaine(mesh, frequencies, [HEAD], lambda stage, share: None)
     found = coefficients_of_rows(rows, mesh, [HEAD])
     return SlowTable(found, DRAUGHT - HULL.centre, GYRADIUS, undisturbed_heave)
+
+
+def met_excitation(hull: MovingHull, wave: Wave) -> Array:
+    """Return the excitation (2,) in heave and pitch with the diffraction at the encounter.
+
+    Args:
+        hull: The hull.
+        wave: The wave.
+    """
+    met = MetWave(wave.frequency, wave.encounter, HEAD, wave.speed)
+    return np.asarray(hull.excitation(met)[[HEAVE, PITCH]], dtype=complex)
 
 
 def undisturbed_heave(number: float) -> float:
@@ -159,13 +182,15 @@ class Load(NamedTuple):
     measured: tuple[float, float]
     zero_speed: tuple[float, float]
     diffraction: tuple[float, float]  # with the moment of the diffraction at forward speed
+    encounter: tuple[float, float]  # with the diffraction at the frequency of encounter too
 
 
-def wave_loads(table: SlowTable) -> list[Load]:
+def wave_loads(table: SlowTable, hull: MovingHull) -> list[Load]:
     """Return measured and computed loads of head waves on the held hull.
 
     Args:
         table: The coefficients.
+        hull: The hull.
     """
     rows = []
     for ratio, *measured in LOADS:
@@ -174,6 +199,7 @@ def wave_loads(table: SlowTable) -> list[Load]:
         found = []
         for diffraction in (False, True):
             found.append(np.abs(table.excitation(wave, diffraction)) / unit)
+        found.append(np.abs(met_excitation(hull, wave)) / unit)
         pairs = [(float(force), float(moment)) for force, moment in (measured, *found)]
         rows.append(Load(ratio, *pairs))
     return rows
@@ -187,14 +213,16 @@ class Heave(NamedTuple):
     measured: float
     found: tuple[float, ...]  # by each of `METHODS`
     diffraction: float  # by the last one, with the moment of the diffraction at forward speed
+    encounter: float  # by the last one, with the diffraction at the frequency of encounter too
     pitch: tuple[float, ...]  # over 2 pi / L times the amplitude, by each of `METHODS`
 
 
-def heave_at_speed(table: SlowTable) -> list[Heave]:
+def heave_at_speed(table: SlowTable, hull: MovingHull) -> list[Heave]:
     """Return measured and computed heave in head waves.
 
     Args:
         table: The coefficients.
+        hull: The hull.
     """
     rows = []
     for froude, ratio, measured in MOTIONS:
@@ -203,7 +231,8 @@ def heave_at_speed(table: SlowTable) -> list[Heave]:
         last = np.abs(table.heave_and_pitch(wave, METHODS[-1], True))
         heave = tuple(float(one[0]) for one in motions)
         pitch = tuple(float(one[1]) * LENGTH / (2.0 * np.pi) for one in motions)
-        rows.append(Heave(froude, ratio, measured, heave, float(last[0]), pitch))
+        met = np.abs(table.motion_under(wave, METHODS[-1], met_excitation(hull, wave)))
+        rows.append(Heave(froude, ratio, measured, heave, float(last[0]), float(met[0]), pitch))
     return rows
 
 

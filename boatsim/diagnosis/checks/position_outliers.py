@@ -16,6 +16,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 NO_VALUES = np.zeros(0)
+PARABOLA, CUBIC = 3, 4  # numbers of coefficients
 NOISE_FAMILIES = {
     "x_m": "position_sd_m",
     "y_m": "position_sd_m",
@@ -35,7 +36,6 @@ def drop_position_outliers(
 
     Returns:
         The recording from its first row that is no outlier; outliers are nan, and remarks count
-        them.
         them.
     """
     first = outlier_rows_at_start(recording, vessel, config)
@@ -73,7 +73,7 @@ def outlier_rows_at_start(
     """Return the number of rows to drop because a recording begins with outliers of its position.
 
     A Kalman filter starts from the first fix and cannot reject it. Each of the first fixes is
-    therefore compared with a parabola through the fixes after it.
+    therefore compared with a parabola and a cubic through the fixes after it.
 
     Args:
         recording: A prepared recording.
@@ -99,14 +99,20 @@ def outlier_rows_at_start(
 
 
 def _is_off_course(t: Array, y: Array, noise: float, config: ChecksConfig) -> bool:
-    """Whether the first of some fixes is off the parabola through the others."""
-    powers = np.vander(t[1:], 3)  # the last coefficient is the value at the first fix
-    inverse = np.linalg.pinv(powers.T @ powers)
-    course = inverse @ (powers.T @ y[1:])
-    freedom = len(t) - 1 - 3
-    residual = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / freedom))
-    limit = config.start_min_sds * max(noise, residual) * np.sqrt(1.0 + inverse[2, 2])
-    return bool(abs(y[0] - course[2]) > limit)
+    """Whether the first of some fixes is off the parabola and the cubic through the others.
+
+    The start of a manoeuvre may be a cubic: a parabola holds for a constant acceleration.
+    """
+    for coefficients in PARABOLA, CUBIC:
+        powers = np.vander(t[1:], coefficients)  # the last one is the value at the first fix
+        inverse = np.linalg.pinv(powers.T @ powers)
+        course = inverse @ (powers.T @ y[1:])
+        freedom = len(t) - 1 - coefficients
+        residual = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / freedom))
+        limit = config.start_min_sds * max(noise, residual) * np.sqrt(1.0 + inverse[-1, -1])
+        if abs(y[0] - course[-1]) <= limit:
+            return False
+    return True
 
 
 def outlier_rows(

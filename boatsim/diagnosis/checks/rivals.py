@@ -11,9 +11,10 @@ from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.checks.finding import Change, apply_corrections_to_all
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording

@@ -623,13 +623,16 @@ class ChecksConfig:
         high=1.0,
     )
     start_course_fixes: int = setting(
-        8, "count", "Fixes through which a parabola is fitted to judge the fix before them.", low=4
+        8,
+        "count",
+        "Fixes through which a parabola and a cubic are fitted to judge the fix before them.",
+        low=5,
     )
     start_max_outliers: int = setting(
         3, "count", "Outliers that are sought at the beginning of a recording, at most.", low=1
     )
     start_min_sds: float = setting(
-        6.0, "1", "Standard deviations from the parabola by which a first fix is an outlier."
+        6.0, "1", "Standard deviations from both curves by which a first fix is an outlier."
     )
     position_min_rows: int = setting(10, "count", "Positions needed to judge their unit.", low=2)
     degrees_max_width: float = setting(

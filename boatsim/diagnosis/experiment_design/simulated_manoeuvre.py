@@ -6,11 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre
-from boatsim.diagnosis.filter import (
-    MappedRecording,
-    command_changes,
-    dof_in_state_order,
-)
+from boatsim.diagnosis.filter import MappedRecording, command_changes, dof_in_state_order
 from boatsim.diagnosis.filter_arguments import rigid_body_values
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ DAY_AND_MONTH = re.compile(r"(\d{1,2})[.\-/ ]+([^\W\d_]{3,9})\.?")
 MONTH_AND_YEAR = re.compile(r"([^\W\d_]{3,9})\.?[.\-/ ]+(\d{2})")
 DECIMALS = re.compile(r"[+-]?\d+[.,](\d+)")
 TRUTH = {"true": 1.0, "false": 0.0}
+MINUS_SIGNS = ("\u2212", "\u2013")  # minus sign and dash of typesetters, in place of a hyphen
+# 6'643'210.5 or 6 643 210.5, also with the blanks that do not break
+GROUPS_BY_BLANKS = re.compile(r"[+-]?\d{1,3}(?:['’ \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
 MIN_NUMBERS = 0.5  # share of the filled cells that are numbers, in a column of numbers
 MAX_SHOWN = 20  # characters of a cell in a remark
 NUMBER_AND_UNIT = re.compile(
@@ -48,12 +51,19 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         cells: Texts of the column (N,).
         separator: Separator of the table, with which a decimal comma can be told from a separator.
     """
+    texts, remarks = cells, []
+    marks = "," if separator == "," else ",."
+    for mark in marks:
+        if separates_thousands(cells, mark):
+            texts = [cell.replace(mark, "") for cell in cells]
+            first = next(i for i, cell in enumerate(cells) if mark in cell)
+            shown = f"{cells[first].strip()!r} = {texts[first].strip()}"
+            remarks.append((f"{mark!r} separates thousands, first in {shown}", first))
     try:
-        return Cells(np.array(list(map(_plain_number, cells))))
+        return Cells(np.array(list(map(_plain_number, texts))), remarks=tuple(remarks))
     except ValueError:
         pass
-    texts = cells
-    if separator == ",":
+    if separator == "," and texts is cells:
         texts = _with_decimal_points(cells)
     found = np.full(len(cells), np.nan)
     words = []  # rows whose cell is neither a number nor empty
@@ -64,7 +74,7 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         else:
             found[i] = value
     if not words:
-        return Cells(found)
+        return Cells(found, remarks=tuple(remarks))
     numbers = int(np.isfinite(found).sum())
     if numbers < MIN_NUMBERS * (numbers + len(words)):
         times = seconds_from_dates(cells)
@@ -77,7 +87,36 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         different = {cells[i].strip() for i in words}
         word = different.pop() if len(different) == 1 else ""
         return Cells(found, word=word)
-    return _restored(cells, found, words)
+    restored = _restored(cells, found, words)
+    return replace(restored, remarks=(*remarks, *restored.remarks))
+
+
+def separates_thousands(cells: Sequence[str], mark: str) -> bool:
+    """Return whether a comma or a point separates thousands in the numbers of a column.
+
+    Two signs are needed: three digits follow each mark, and a number has two marks or all numbers
+    without one are whole and below 1000.
+
+    Args:
+        cells: Texts of the column (N,).
+        mark: Comma or point.
+    """
+    grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:\{mark}\d{{3}})+")
+    has_groups, has_small, has_two = False, False, False
+    for cell in cells:
+        text = cell.strip()
+        if not any(map(str.isdigit, text)):
+            continue
+        if mark in text:
+            if not grouped.fullmatch(text):
+                return False
+            has_groups = True
+            has_two = has_two or text.count(mark) > 1
+        elif re.fullmatch(r"[+-]?\d{1,3}", text):
+            has_small = True
+        else:
+            return False
+    return has_groups and (has_small or has_two)
 
 
 def _numbers_with_unit(texts: Sequence[str], words: Sequence[int], separator: str) -> Cells | None:
@@ -111,6 +150,10 @@ def number_of_cell(cell: str, separator: str) -> float | None:
     text = cell.strip()
     if text.lower() in EMPTY_WORDS:
         return float("nan")
+    for sign in MINUS_SIGNS:
+        text = text.replace(sign, "-")
+    if GROUPS_BY_BLANKS.fullmatch(text):
+        text = re.sub(r"['’\s]", "", text)
     if separator != "," and "," in text:
         if text.rfind(",") > text.rfind("."):
             text = text.replace(".", "")  # of thousands

@@ -12,7 +12,7 @@ from boatsim.recordings.expression import UNITS
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
     r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?"
-    r"|t_?(vec|vector|out|axis|log)"
+    r"|t_?(vec|vector|out|axis|log|rx|recv|received|sent|unix|utc|gps|pc)"
     r"|time_?(s|ms|us|ns)?)$"
 )
 ENDING = re.compile(
@@ -30,6 +30,8 @@ EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are
 TIME_WORDS = {
     *("time", "times", "timestamp", "stamp", "clock", "date", "datetime", "utc", "epoch"),
     *("gpstime", "uptime", "millis", "micros", "zeit", "tid"),
+    # seconds of a day or of a week of GPS
+    *("hhmmss", "seconds", "secs", "sow", "tow", "itow"),
 }
 # Words of a time that is not that of the row: a duration, or the time of another row
 NOT_NOW = set("previous prev last next cycle delta diff step dt start begin end period up".split())
@@ -41,7 +43,22 @@ SHEET_DAYS = (36526.0, 73051.0)
 SHEET_EPOCH = 25569.0  # [days] 1970-01-01
 # [days] A larger median step between rows, 43 s, is of no log; seconds have larger steps than this
 MAX_SHEET_STEP = 5e-4
-DAY = 86400.0  # [s]
+DAY, HOUR, MINUTE = 86400.0, 3600.0, 60.0  # [s]
+# Numbers hhmmss leap by 40 and a step from 59 s to the next minute
+MIN_MINUTE_LEAP = 40.0
+# Last word of a column of a part of the time -> kind of the part
+CALENDAR = {
+    **dict.fromkeys(("year", "years", "yyyy", "yy"), "year"),
+    **dict.fromkeys(("month", "months", "mon"), "month"),
+    **dict.fromkeys(("day", "days", "dd"), "day"),
+    **dict.fromkeys(("hour", "hours", "hh", "hr"), "hour"),
+    **dict.fromkeys(("minute", "minutes", "min", "mm", "mi"), "minute"),
+    **dict.fromkeys(("second", "seconds", "sec", "secs", "ss"), "second"),
+}
+CALENDAR_RANGES = {  # lowest number of each part, and the number that it stays below
+    **{"year": (0.0, 2101.0), "month": (1.0, 13.0), "day": (1.0, 32.0)},
+    **{"hour": (0.0, 24.0), "minute": (0.0, 60.0), "second": (0.0, 60.0)},
+}
 # Last word of a column of whole seconds -> none; of its fraction -> unit [s]
 WHOLE_SECONDS = {"s", "sec", "secs", "second", "seconds"}
 FRACTIONS = {
@@ -57,9 +74,10 @@ MIN_COUNTED_STEP = 0.002  # [s] of rows whose times are counted in a smaller uni
 def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> str | None:
     """Return the name of the column of a table that holds the times of its rows.
 
-    It is the first column of a usual name whose values increase. Without one it is a column of
-    dates, then one whose name contains a word for time, then one that counts since 1970. Values of
-    these may repeat but hardly ever decrease; the one with the most different values is chosen.
+    It is the first column of a usual name whose values increase, or in rows out of order differ.
+    Without one it is a column of dates, then one whose name contains a word for time, then one that
+    counts since 1970. Values of these may repeat but hardly ever decrease; the one with the most
+    different values is chosen.
 
     Args:
         columns: Name -> values (N,).
@@ -71,7 +89,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
     for name, values in columns.items():
         plain = re.sub(r"[\s.]+", "_", ENDING.sub("", name.lower())) or "t"
         finite = values[np.isfinite(values)]
-        if CLOCK.match(plain) and len(finite) > 1 and finite[-1] > finite[0]:
+        if CLOCK.match(plain) and len(finite) > 1 and _may_be_times(finite):
             return name
     increasing = {}
     for name, values in columns.items():
@@ -84,10 +102,20 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
     return None
 
 
+def _may_be_times(finite: Array) -> bool:
+    """Whether finite values (N,) increase, or are different in most of the rows, out of order."""
+    if finite[-1] > finite[0]:
+        return True
+    return len(finite) >= MIN_TIMES and len(np.unique(finite)) > MIN_FORWARD * len(finite)
+
+
 def _hardly_decreases(values: Array) -> bool:
-    """Whether values (N,) increase as times do, except for a few rows out of order."""
+    """Whether values (N,) increase as times do, except for a few steps back.
+
+    Rows may be out of order, or a clock is set back, or begins again at midnight.
+    """
     finite = values[np.isfinite(values)]
-    if len(finite) < MIN_TIMES or not finite[-1] > finite[0]:
+    if len(finite) < MIN_TIMES:
         return False
     steps = np.diff(finite)
     forward = float(np.mean(steps > 0.0))
@@ -105,15 +133,14 @@ def _is_epoch(values: Array) -> bool:
     return any(YEAR_2000 < middle * unit < YEAR_2100 for unit in EPOCH_UNITS)
 
 
-class TimeParts(NamedTuple):
-    """Times (N,) [s] from a column of whole seconds and a column of their fractions."""
+class TimesOfColumns(NamedTuple):
+    """Times (N,) [s] of the rows, and the names of the columns from which they follow."""
 
     t: Array
-    seconds: str
-    fraction: str
+    names: tuple[str, ...]
 
 
-def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> TimeParts | None:
+def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> TimesOfColumns | None:
     """Return the times of a table that has whole seconds and their fractions in two columns.
 
     Args:
@@ -140,8 +167,114 @@ def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> Tim
                 continue
             t = times_in_seconds(seconds, values) + unit * of_fraction
             if _hardly_decreases(t):
-                return TimeParts(t, seconds, fraction)
+                return TimesOfColumns(t, (seconds, fraction))
     return None
+
+
+def calendar_times(columns: Mapping[str, Array]) -> TimesOfColumns | None:
+    """Return the times of a table that has hours, minutes and seconds in columns of their own.
+
+    They count from 1970 if the table has year, month and day too, else from midnight.
+
+    Args:
+        columns: Name -> values (N,).
+
+    Returns:
+        The times; None without such columns, or if these do not increase as times do.
+    """
+    parts: dict[str, str] = {}
+    for name, values in columns.items():
+        kind = CALENDAR.get(_words(name)[-1], "")
+        known = values[np.isfinite(values)]
+        if not kind or kind in parts or not len(known):
+            continue
+        low, high = CALENDAR_RANGES[kind]
+        is_whole = kind == "second" or bool((known == np.round(known)).all())
+        if is_whole and known.min() >= low and known.max() < high:
+            parts[kind] = name
+    if not {"hour", "minute", "second"} <= parts.keys():
+        return None
+    at = {kind: columns[name] for kind, name in parts.items()}
+    t = HOUR * at["hour"] + MINUTE * at["minute"] + at["second"]
+    names = list(parts.values())
+    fraction = _fraction_of_whole_seconds(columns, at["second"])
+    if fraction:
+        t = t + FRACTIONS[_words(fraction)[-1]] * columns[fraction]
+        names.append(fraction)
+    if {"year", "month", "day"} <= parts.keys():
+        t = t + DAY * _days_since_1970(at["year"], at["month"], at["day"])
+    else:
+        t = _after_midnight(t)
+    if not _is_in_order(t):
+        return None
+    return TimesOfColumns(t, tuple(names))
+
+
+def _is_in_order(t: Array) -> bool:
+    """Whether times (N,), of which several rows may share one, hardly ever decrease."""
+    finite = t[np.isfinite(t)]
+    if len(finite) < MIN_TIMES or not np.ptp(finite) > 0.0:
+        return False
+    return float(np.mean(np.diff(finite) < 0.0)) <= MAX_BACKWARD
+
+
+def _fraction_of_whole_seconds(columns: Mapping[str, Array], seconds: Array) -> str:
+    """Name of the column of the fractions of whole seconds (N,); "" without one."""
+    if (seconds[np.isfinite(seconds)] % 1.0 != 0.0).any():
+        return ""
+    for name, values in columns.items():
+        unit = FRACTIONS.get(_words(name)[-1], 0.0)
+        known = values[np.isfinite(values)]
+        if unit and len(known) and known.min() >= 0.0 and 0.0 < known.max() * unit < 1.0:
+            return name
+    return ""
+
+
+def _days_since_1970(year: Array, month: Array, day: Array) -> Array:
+    """Days (N,) since 1970 of dates; nan where a part is missing."""
+    known = np.isfinite(year) & np.isfinite(month) & np.isfinite(day)
+    days = np.full(len(year), np.nan)
+    full = year[known] + np.where(year[known] < 100.0, 2000.0, 0.0)
+    months = (full.astype(np.int64) - 1970) * 12 + month[known].astype(np.int64) - 1
+    first = months.astype("M8[M]").astype("M8[D]").astype(np.int64)
+    days[known] = first + day[known] - 1.0
+    return days
+
+
+def times_of_day_from_digits(values: Array) -> Array | None:
+    """Return the seconds since midnight (N,) of times written as the number hhmmss.ss.
+
+    Two signs are needed: all numbers have minutes and seconds below 60, and from minute to minute
+    the number leaps by 40 more than the time does. Times go on after midnight.
+
+    Args:
+        values: Times (N,) as logged.
+
+    Returns:
+        The times; None if the numbers are no such times.
+    """
+    finite = values[np.isfinite(values)]
+    if len(finite) < MIN_TIMES or finite.min() < 0.0 or finite.max() >= 240000.0:
+        return None
+    if (finite % 100.0 >= 60.0).any() or (finite // 100.0 % 100.0 >= 60.0).any():
+        return None
+    seconds = HOUR * (values // 10000.0) + MINUTE * (values // 100.0 % 100.0) + values % 100.0
+    t = _after_midnight(seconds)
+    steps, of_digits = np.diff(t[np.isfinite(t)]), np.diff(finite)
+    leaps = of_digits >= MIN_MINUTE_LEAP
+    usual = max(2.0 * float(np.median(np.abs(steps))), 1.0)
+    if not leaps.any() or float(np.mean(np.abs(steps[leaps]) <= usual)) < MIN_FORWARD:
+        return None
+    return t
+
+
+def _after_midnight(t: Array) -> Array:
+    """Times of day (N,) [s], which go on after midnight."""
+    known = np.isfinite(t)
+    back = np.append(0.0, np.diff(t[known])) < -0.5 * DAY
+    found = t.copy()
+    found[known] += DAY * np.cumsum(back)
+    return found
 
 
 def _words(name: str) -> list[str]:

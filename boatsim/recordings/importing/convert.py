@@ -121,7 +121,8 @@ def convert_log(
     for name, what in map.columns.items():
         t, values = _column(work, name, what)
         t = t - map.latency.get(name, 0.0)
-        disorder.setdefault(count_unordered_samples(t), []).append(name)
+        known = np.isfinite(values)  # of a table whose sensors share the rows
+        disorder.setdefault(count_unordered_samples(t[known]), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_check_values(work, name, clean_samples(t, values)), is_held)
     _remark_disorder(work, disorder)
@@ -237,9 +238,12 @@ def _with_continued_clocks(log: Log) -> Log:
         times[key], steps = continue_clock(signal.t, streams[key])
         for step in steps:
             stream = signal.source or name.rpartition(".")[0] or log.path.name
+            moved = f"goes back by {step.seconds:.6g} s"
+            if step.seconds < 0.0:
+                moved = f"is put forward by {-step.seconds:.6g} s"
             text = (
-                f"{log.path}: {stream}: the clock goes back by {step.seconds:.3g} s after sample "
-                f"{step.row}, but the samples go on; the later ones are moved so that they follow. "
+                f"{log.path}: {stream}: the clock {moved} after sample {step.row}, but the samples "
+                "go on; the later ones are moved so that they follow. "
                 "If the log was begun again there, cut it"
             )
             remarks[text] = None

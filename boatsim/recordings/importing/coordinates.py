@@ -16,7 +16,7 @@ COORDINATE = re.compile(
     r"(?:\s*(?P<seconds>\d{1,2}(?:[.,]\d+)?)\s*(?:\"|''|”|″|s)?)?)?\s*(?P<after>[NSEW])?",
     re.IGNORECASE,
 )
-NEGATIVE = "SW"  # hemispheres of negative degrees
+HEMISPHERES = {"N": 1.0, "E": 1.0, "S": -1.0, "W": -1.0}  # letter -> sign of the degrees
 MIN_COORDINATES = 0.9  # share of the filled cells that are coordinates
 
 
@@ -60,14 +60,35 @@ def _degrees(text: str) -> float:
         value += float((parts[key] or "0").replace(",", ".")) / scale
         scale *= 60.0
     hemisphere = (parts["before"] or parts["after"] or "").upper()
-    if parts["sign"] == "-" or (hemisphere and hemisphere in NEGATIVE):
+    if parts["sign"] == "-":
         return -value
-    return value
+    return HEMISPHERES.get(hemisphere, 1.0) * value
 
 
-def degrees_of_degrees_and_minutes(
+def places_of_hemispheres(
     columns: Mapping[str, Array], words: Mapping[str, str]
 ) -> dict[str, Array]:
+    """Return the latitudes and longitudes (N,) that a column of S or W makes negative.
+
+    One column must have a letter for north or south, and another one for east or west: a single
+    letter may be a state.
+
+    Args:
+        columns: Name -> values (N,) of a table, in the order of the file.
+        words: Name -> word of each column in which every cell is the same word.
+    """
+    letters = {word.upper() for word in words.values()}
+    if not (letters & {"N", "S"} and letters & {"E", "W"}):
+        return {}
+    found = {}
+    for kind, letter in (("latitude", "S"), ("longitude", "W")):
+        names = [name for name in columns if kind_of_place(name) == kind]
+        if letter in letters and names:
+            found[names[0]] = -np.abs(columns[names[0]])
+    return found
+
+
+def degrees_of_degrees_and_minutes(columns: Mapping[str, Array]) -> dict[str, Array]:
     """Return the columns in degrees that are written as ddmm.mmmm, as NMEA 0183 does.
 
     Two signs are needed: the numbers of a latitude or a longitude exceed those of any place in
@@ -75,7 +96,6 @@ def degrees_of_degrees_and_minutes(
 
     Args:
         columns: Name -> values (N,) of a table.
-        words: Name -> word of each column in which every cell is the same word, such as N or W.
 
     Returns:
         Name -> degrees (N,), for latitude and longitude together; empty if they are in degrees.
@@ -97,13 +117,9 @@ def degrees_of_degrees_and_minutes(
     if not exceeds:
         return {}
     found = {}
-    hemispheres = {word.upper() for word in words.values()}
-    for kind, name in places.items():
+    for name in places.values():
         values = columns[name]
         size = np.abs(values)
         degrees = np.floor(size / 100.0)
-        sign = np.sign(values)
-        if {"latitude": "S", "longitude": "W"}[kind] in hemispheres:
-            sign = -np.abs(sign)
-        found[name] = sign * (degrees + (size - 100.0 * degrees) / 60.0)
+        found[name] = np.sign(values) * (degrees + (size - 100.0 * degrees) / 60.0)
     return found

@@ -31,10 +31,10 @@ YEAR_FIRST = re.compile(
     re.IGNORECASE,
 )
 YEAR_LAST = re.compile(
-    rf"(?P<first>\d{{1,2}})(?P<mark>[-/.])(?P<other>\d{{1,2}})[-/.](?P<year>\d{{4}})"
+    rf"(?P<first>\d{{1,2}})(?P<mark>[-/.])(?P<other>\d{{1,2}})[-/.](?P<year>\d{{4}}|\d{{2}}(?=\D))"
     rf"(?:[t_\s;,-]+{TIME})?",
     re.IGNORECASE,
-)
+)  # a year of two digits is one only before a time of day
 NAMED_MONTH = re.compile(
     rf"(?P<day>\d{{1,2}})[.\s-]+(?P<name>[^\W\d_]{{3,9}})\.?[\s-]+(?P<year>\d{{4}})"
     rf"(?:[t_\s;,-]+{TIME})?",
@@ -43,6 +43,7 @@ NAMED_MONTH = re.compile(
 TIME_OF_DAY = re.compile(TIME, re.IGNORECASE)
 MINUTES = re.compile(r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})")
 DAY, HOUR = 86400.0, 3600.0  # [s]
+CENTURY = 2000  # of a year of two digits
 MIN_DATES = 0.9  # share of the cells with text that are dates, in a column of dates
 
 
@@ -50,8 +51,8 @@ def seconds_from_dates(cells: Sequence[str]) -> Array | None:
     """Return the times (N,) in s of a column of dates or times of day.
 
     Dates are in any usual order, with any usual separators and fractions of a second, and count
-    from 1970, UTC without a zone. Times of day count from midnight, go on after the next midnight,
-    and need seconds.
+    from 1970, UTC without a zone. A year may have two digits if a time of day follows. Times of day
+    count from midnight, go on after the next midnight, and need seconds.
 
     Args:
         cells: Cells of the column; an empty one becomes nan.
@@ -128,7 +129,10 @@ def _year_last(texts: Sequence[str]) -> Callable[[str], float]:
         day, month = int(found["first"]), int(found["other"])
         if month_first:
             day, month = month, day
-        return _seconds(found, int(found["year"]), month, day)
+        year = int(found["year"])
+        if year < 100:
+            year += CENTURY
+        return _seconds(found, year, month, day)
 
     return seconds_from_date
 

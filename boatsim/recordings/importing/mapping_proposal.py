@@ -26,6 +26,7 @@ from boatsim.recordings.importing.several_logs import (
     files_with_unrelated_clocks,
 )
 from boatsim.recordings.importing.signal_classification import (
+    FROM_EAST,
     HELM,
     ORDERED,
     PULSE,
@@ -41,11 +42,11 @@ from boatsim.recordings.importing.signal_classification import (
 from boatsim.recordings.importing.single_axis import is_load_of_channel, names_load
 from boatsim.recordings.importing.track import (
     Track,
-    rate_in_degrees,
     reason_not_measured,
     reason_poses_unusable,
     speed_unit,
     track_of,
+    unit_of_rate,
     values_in_si,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
@@ -123,11 +124,16 @@ def _signal_figures(signal: Signal) -> tuple[str, str, str, str, str]:
         low, high = f"{values.min():.6g}", f"{values.max():.6g}"
     return (
         _without_control_characters(signal.unit)[:12],
-        f"{median_sampling_rate(signal.t[np.isfinite(signal.values)]):.3g}",
+        f"{_sampling_rate(signal):.3g}",
         str(len(values)),
         low,
         high,
     )
+
+
+def _sampling_rate(signal: Signal) -> float:
+    """Rate [Hz] of the values of a signal, without the rows of a table in which it is empty."""
+    return median_sampling_rate(np.sort(signal.t[np.isfinite(signal.values)]))
 
 
 def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
@@ -204,6 +210,7 @@ def propose_map(
         f'vessel = "{vessel}"' if vessel else '# vessel = "NAME"',
         *([] if measured else _rate_lines((*used, *driven))),
         "# use = [0.0, 60.0]  # [s] since the log begins, the part to convert",
+        *_time_lines(log),
         *_begin_lines(log, best),
         "",
         *body,
@@ -229,7 +236,7 @@ def _stated_columns(log: Log, stated: Mapping[str, str]) -> tuple[dict[str, str]
 
 def _rate_lines(used: Sequence[Classification]) -> list[str]:
     """A line that limits the rate of the rows, if a signal is faster."""
-    fastest = max((median_sampling_rate(g.signal.t) for g in used), default=0.0)
+    fastest = max((_sampling_rate(g.signal) for g in used), default=0.0)
     if fastest <= 1.01 * MAX_ROW_RATE:
         return []
     return [f"rate = {MAX_ROW_RATE:g}  # [Hz] of rows; the fastest signal has {fastest:.3g}"]
@@ -257,11 +264,10 @@ def _with_rate_unit(
         return dict(best)
     heading, rates = best["psi_rad"][0], []
     for g in best.get("r_radps", []):
-        in_degrees = rate_in_degrees(g, heading) if g.why.endswith(BY_ITS_RANGE) else None
-        if in_degrees is True:
-            g = replace(g, word="degps", why="degrees by the changes of the heading")
-        elif in_degrees is False:
-            g = replace(g, word="", why="radians by the changes of the heading")
+        unit = unit_of_rate(g, heading) if g.why.endswith(BY_ITS_RANGE) else None
+        if unit is not None:
+            name = {"degps": "degrees", "": "radians", "degpmin": "degrees per minute"}[unit]
+            g = replace(g, word=unit, why=f"{name} by the changes of the heading")
         rates.append(g)
     kept = dict(best)
     if rates:
@@ -304,6 +310,20 @@ def _without_contradictions(
         if column in kept and not kept[column]:
             del kept[column]
     return kept, lines
+
+
+def _time_lines(log: Log) -> list[str]:
+    """A line for the times of a table in which no column holds them."""
+    lines = []
+    for source in dict.fromkeys(signal.source for signal in log.signals.values()):
+        t = next(signal.t for signal in log.signals.values() if signal.source == source)
+        if np.array_equal(t, np.arange(len(t))):
+            is_clock = any(np.array_equal(signal.values, t) for signal in log.signals.values())
+            key = f"time.{toml_key(source)}" if source else "time"
+            if not is_clock:
+                why = "no column holds times; rows are taken as 1 s apart"
+                lines.append(f'# {key} = "..."  # CHECK: {why}')
+    return lines
 
 
 def _begin_lines(log: Log, best: Mapping[str, Sequence[Classification]]) -> list[str]:
@@ -376,6 +396,8 @@ def _motion_lines(
             quarter = QUARTER_TURN
         elif not enu and has_opposite_sense(column, g.tokens):
             sign = "-"
+            if column == "psi_rad" and g.tokens & FROM_EAST:
+                quarter = QUARTER_TURN
         expression = toml_value(sign + _expression(g) + quarter)
         line = f"{column} = {expression}{_comment(g, best[source])}"
         if column in INCLINATIONS and (INCLINATIONS[column] not in dof or _is_constant(g)):
@@ -415,7 +437,7 @@ def _expression(g: Classification) -> str:
 
 def _comment(g: Classification, others: Sequence[Classification]) -> str:
     """A comment with the rate, the assumption and further possible signals."""
-    parts = [f"{median_sampling_rate(g.signal.t):.3g} Hz"]
+    parts = [f"{_sampling_rate(g.signal):.3g} Hz"]
     if g.why:
         parts.append(g.why)
     if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
@@ -827,7 +849,7 @@ def _channel_line(
     low, high = -1.0, 1.0
     if drive:
         low, high = drive.low, drive.high
-    note = f"  # {median_sampling_rate(g.signal.t):.3g} Hz"
+    note = f"  # {_sampling_rate(g.signal):.3g} Hz"
     if g.signal.about:
         note += f"; {_without_control_characters(g.signal.about)}"
     if drive and is_load_of_channel(g.tokens, tokenize_name(name)) and not _unit(g):

@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.expression import UNITS
+from boatsim.recordings.expression import UNITS, parse
+from boatsim.recordings.importing.heading_evidence import heading_by_course, rate_by_heading
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import (
     ANGLES,
@@ -19,6 +20,7 @@ from boatsim.recordings.importing.signal_classification import (
     has_stated_unit,
     tokenize_name,
 )
+from boatsim.recordings.importing.track import track_of
 
 NORTH, EAST = "n", "e"  # names of two columns that may be a position
 RATE_OF = {"r_radps": "psi_rad", "p_radps": "phi_rad", "q_radps": "theta_rad"}
@@ -49,10 +51,36 @@ def correct_classification_by_motion(
     corrected = list(found)
     if "x_m" not in best and "y_m" not in best and "latitude" not in best:
         corrected = _with_north_and_east(corrected, log, best)
-    heading = best.get("psi_rad")
-    if heading is None:
+    if best.get("psi_rad") is None:
         return corrected
-    return [_with_unit(g, heading, best) for g in corrected]
+    if not log.frame:
+        corrected = _with_heading_by_course(corrected)
+        best |= {"psi_rad": _best_of(corrected, "psi_rad")[0]}
+    heading = best["psi_rad"]
+    corrected = [_with_unit(g, heading, best) for g in corrected]
+    if log.frame:
+        return corrected
+    turned = []
+    for g in corrected:
+        turned.append(rate_by_heading(g, heading) if g.column == "r_radps" else g)
+    return turned
+
+
+def _best_of(found: Sequence[Classification], column: str) -> list[Classification]:
+    """The classified signals of a column, the highest score first."""
+    return sorted((g for g in found if g.column == column), key=lambda g: -g.score)
+
+
+def _with_heading_by_course(found: Sequence[Classification]) -> list[Classification]:
+    """The classification with the unit and the sense of headings that the track shows."""
+    places = {}
+    for column in ("latitude", "longitude", "x_m", "y_m"):
+        places[column] = _best_of(found, column)
+    track = track_of(places)
+    corrected = []
+    for g in found:
+        corrected.append(heading_by_course(g, track) if g.column == "psi_rad" else g)
+    return corrected
 
 
 def _with_north_and_east(
@@ -114,8 +142,8 @@ def _common(north: Signal, east: Signal) -> tuple[Array, Array, Array]:
 
 def _in_si(g: Classification) -> Array:
     """Values (N,) of a signal in the unit of its column."""
-    if g.word in UNITS:
-        return g.signal.values * UNITS[g.word]
+    if g.word:
+        return parse(f"x * {g.word}", ()).convert(g.signal.values)
     return g.signal.values
 
 
@@ -131,15 +159,22 @@ def _with_unit(
     angle = best.get(RATE_OF.get(g.column, ""))
     if angle is not None:
         ratio = _ratio_of_changes(angle, g.signal)
-        for word, factor in ((degrees, UNITS["deg"]), ("", 1.0)):
+        for word, factor, unit in _units_of(degrees):
             if 1.0 / TOLERANCE < ratio / factor < TOLERANCE:
-                unit = "degrees" if word else "radians"
                 return replace(g, word=word, why=f"{unit} by the changes of {angle.name}")
-    in_degrees = heading.word == "deg"
+    in_degrees = heading.word.startswith("deg")
     is_helm = g.column == "command" and bool(g.tokens & ANGLES)
     if in_degrees and not g.word and (g.column in TURNED or is_helm):
         return replace(g, word=degrees, why=f"CHECK: degrees as {heading.name}")
     return g
+
+
+def _units_of(degrees: str) -> list[tuple[str, float, str]]:
+    """Units that an angle or a rate without a unit may have: word, factor to SI, and name."""
+    units = [(degrees, UNITS["deg"], "degrees"), ("", 1.0, "radians")]
+    if degrees == "degps":
+        units.append(("degpmin", UNITS["degpmin"], "degrees per minute"))
+    return units
 
 
 def _ratio_of_changes(angle: Classification, rate: Signal) -> float:

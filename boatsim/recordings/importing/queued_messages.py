@@ -2,7 +2,8 @@
 
 A link or a program stalls, and nothing is logged. Then the queued messages are read one after
 another, faster than they were sent: the recorded vessel stands still over the gap, and afterwards
-moves faster than before and after, until the queue is empty.
+moves faster than before and after, until the queue is empty. A queue that is read at once shows
+itself by the number of its messages too.
 """
 
 from collections.abc import Iterator
@@ -29,6 +30,8 @@ NEARLY = 0.9
 QUIET = 0.5  # of the gap without a new value: the signal stalled with the positions
 LONGEST_QUEUE = 3.0  # of the gap: a queue that is read at less than 1.3 times its rate is not told
 LEAST_PATH = 0.5  # [m] that must be missing over the gap
+BURST_INTERVAL = 0.2  # of the usual interval: messages that were read at once
+BURST_TOLERANCE = 0.1  # share by which their number may differ from the missing one
 
 
 class Queue(NamedTuple):
@@ -68,7 +71,9 @@ def queued_positions(t: Array, x: Array, y: Array) -> Iterator[Queue]:
     for i in np.flatnonzero(intervals > longest):
         if times[i] < on_time:
             continue
-        end = _end_of_queue(times, points, int(i))
+        end = _end_of_burst(times, int(i), float(usual))
+        if end is None:
+            end = _end_of_queue(times, points, int(i))
         if end is not None:
             on_time = times[end]
             yield Queue(float(times[i]), float(times[i + 1]), float(on_time))
@@ -93,6 +98,22 @@ def late_samples(t: Array, values: Array, queue: Queue) -> NDArray[np.bool_]:
     if queue.begin - newest < QUIET * (queue.begin - queue.last):
         return np.zeros(len(t), dtype=np.bool_)
     return np.asarray((t > max(newest, queue.last)) & (t < queue.end))
+
+
+def _end_of_burst(t: Array, i: int, usual: float) -> int | None:
+    """Number of the fix after the messages that arrived at once after fix i; None without them.
+
+    Two signs are needed: they follow far faster than their sensor measures, and there are as many
+    as are missing over the gap.
+    """
+    slow = np.flatnonzero(np.diff(t[i + 1 :]) > BURST_INTERVAL * usual)
+    if not len(slow):
+        return None
+    end = i + 2 + int(slow[0])
+    missing = (t[i + 1] - t[i]) / usual
+    if abs(end - 1 - i - missing) > max(1.0, BURST_TOLERANCE * missing):
+        return None
+    return end
 
 
 def _end_of_queue(t: Array, points: Array, i: int) -> int | None:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
@@ -30,6 +31,7 @@ WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
     **dict.fromkeys(("us", "µs"), "us"),
     "deg/min": "degpmin",
     "mm": "mm",
+    "cdeg": "deg * 0.01",
     "cm": "cm",
     "km": "km",
     "ft": "ft",
@@ -64,8 +66,8 @@ SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split(
 STICKS = set("rcin joy stick joystick manual pilot".split())
 HELM = set("rudder steer steering nozzle azimuth azi helm delta jet angle pos wheel tiller".split())
 SIDES = {
-    **dict.fromkeys(("port", "left", "ps", "portside"), "port"),
-    **dict.fromkeys(("starboard", "stbd", "right", "sb"), "starboard"),
+    **dict.fromkeys(("port", "left", "ps", "portside", "bb"), "port"),
+    **dict.fromkeys(("starboard", "stbd", "stb", "right", "sb"), "starboard"),
 }
 LETTERS = {"l": "port", "p": "port", "r": "starboard", "s": "starboard"}  # sides of drives
 PULSE = (800.0, 2200.0)  # [us] range of the pulses of all servos and motor controllers
@@ -84,6 +86,9 @@ POSE_WORDS = {
 # words in the name of a signal whose positive sense is the opposite of that of recordings
 TO_PORT = {"left", "port"}
 COUNTERCLOCKWISE = {"ccw", "counterclockwise", "anticlockwise"}
+FROM_EAST = {"enu"}  # x east, y north, angles counterclockwise from east
+CLOCKWISE = {"ned", "cw", "clockwise", "compass"}
+FRAMES = FROM_EAST | {"ned"}
 DISPLACEMENTS = {"surge": "x_m", "sway": "y_m", "heave": "z_m"}  # of a body on a rig
 LENGTHS = {"m", "mm", "cm"}
 SPEEDS = {"rate", "speed", "velocity", "vel"}
@@ -106,6 +111,7 @@ ANGLES = set("rudder steer steering nozzle azimuth azi helm delta wheel tiller".
 MAX_RUDDER = 1.6  # [rad] a larger rudder angle is in degrees
 LEAST_SCALED = 1e5  # [1e-7 deg] 0.01 degrees; smaller numbers are of no place in this unit
 FULL_CIRCLE = 360.0  # [deg] largest order to a thruster that turns around
+MANY_TURNS = 10.0 * FULL_CIRCLE  # [deg] no heading in whole degrees is counted on as far
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
 COLUMNS = (*POSE, *RATES)
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -240,6 +246,8 @@ def classify_signal(
         return None  # the clock of a table is no signal
     words = tokenize_name(name) or [""]  # a name may have no word
     tokens = frozenset(words)
+    if words[-2:] == ["e", "7"]:  # lat_e7, in 1e-7 degrees
+        words = words[:-2]
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 * bool(np.ptp(values) > 0.0)
     rate = (
@@ -257,6 +265,8 @@ def classify_signal(
     if effort and not _is_load(tokens, body):
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = _drive_kind(signal, tokens)
+    if kind is None and signal.source and side_from_tokens(tokens):
+        kind = _drive_kind(signal, tokens | frozenset(tokenize_name(Path(signal.source).stem)))
     if kind is None and _is_direction_order(name, tokens, log):
         word, why = _unit_word(name, signal), ""
         if not (signal.unit or word) and 2.0 * np.pi < float(np.max(np.abs(values))) <= FULL_CIRCLE:
@@ -319,8 +329,17 @@ def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tu
     if column.endswith("_rad"):
         unit, largest = "deg", 2.0 * pi + 0.3
     if float(np.nanmax(np.abs(signal.values))) > largest:
+        if column == "psi_rad" and _is_in_hundredths(signal):
+            return "deg * 0.01", "hundredths of degrees by its range and whole numbers"
         return unit, "degrees by its range"
     return word, BY_RANGE
+
+
+def _is_in_hundredths(signal: Signal) -> bool:
+    """Whether a heading is in 0.01 degrees: whole numbers up to 36000, far beyond a circle."""
+    values = signal.values[np.isfinite(signal.values)]
+    is_whole = bool((values == np.round(values)).all())
+    return is_whole and values.min() >= 0.0 and MANY_TURNS < values.max() <= 100.0 * FULL_CIRCLE
 
 
 def has_stated_unit(name: str, signal: Signal) -> bool:
@@ -370,7 +389,7 @@ def _drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
         or "n" in tokens
         and not tokens - NUMBERED
     )
-    driven = driven or _is_share_of_a_side(signal, tokens)
+    driven = driven or _is_share_of_a_side(signal, tokens) or _is_force_of_a_side(signal, tokens)
     if not driven or tokens & OTHER or "wheel" in tokens and tokens & SPEEDS:
         return None
     if tokens & SENSED and not tokens & {"cmd", "command", "commanded"}:
@@ -398,6 +417,12 @@ def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
     return "percent" in units
 
 
+def _is_force_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:
+    """Whether a name has nothing but a side, F or force, and the unit N, as `F_port [N]`."""
+    is_force = signal.unit == "N" and bool(side_from_tokens(tokens))
+    return is_force and not tokens - {"f", "force"} - NUMBERED - set(LETTERS)
+
+
 def names_channel(name: str, channels: Sequence[str]) -> bool:
     """Whether a name is that of a command of the vessel without its unit, such as `fan_a1`.
 
@@ -417,7 +442,9 @@ def has_opposite_sense(column: str, tokens: frozenset[str]) -> bool:
     """
     if column in ("y_m", "v_mps"):
         return bool(tokens & TO_PORT)
-    return column in ("psi_rad", "r_radps") and bool(tokens & COUNTERCLOCKWISE)
+    if column in ("psi_rad", "r_radps"):
+        return bool(tokens & (COUNTERCLOCKWISE | FROM_EAST))
+    return False
 
 
 def _of_numbered(name: str, tokens: frozenset[str], log: Log) -> str | None:
@@ -466,7 +493,7 @@ def _effort(words: Sequence[str], tokens: frozenset[str]) -> str | None:
 
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     """The pose or velocity of a name; None for another."""
-    last = [word for word in last if word not in TO_PORT | COUNTERCLOCKWISE] or last
+    last = [word for word in last if word not in TO_PORT | COUNTERCLOCKWISE | FRAMES] or last
     end = last[-1]
     if found := _angular_rate(end, tokens):
         return found
@@ -477,6 +504,8 @@ def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
         and not tokens & MOTIONS
         and (tokens & (PLACES | SATELLITES) or len(last) == 1)
     ):
+        if tokens & FROM_EAST and not log.frame:
+            return {"x": "y_m", "y": "x_m"}[end]
         return {"x": "x_m", "y": "y_m"}[end]
     if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]

@@ -23,6 +23,8 @@ def cells_of_line(line: str, separator: str) -> list[str]:
 def separator_of(header: str, row: str) -> str:
     """Return the separator of a table; blanks if header and row have equally many words."""
     best = max(SEPARATORS, key=header.count)
+    if best == "," and is_row_of_numbers(cells_of_line(header, ";"), ";") and ";" in header:
+        return ";"  # a first row of numbers with decimal commas
     if best not in header and len(header.split()) == len(row.split()) > 1:
         return BLANK
     return best
@@ -44,10 +46,11 @@ def header_line(lines: Sequence[str]) -> int:
     best, most = 0, 0
     for separator in SEPARATORS:
         widths = [_width(line, separator) for line in sample]
-        width, count = Counter(widths[len(widths) // 2 :]).most_common(1)[0]
-        if width < 2 or count * width <= most:
+        width, _ = Counter(widths[len(widths) // 2 :]).most_common(1)[0]
+        numbers = _count_numbers(sample[len(widths) // 2 :], separator)
+        if width < 2 or numbers <= most:
             continue
-        best, most = widths.index(width), count * width
+        best, most = widths.index(width), numbers
     return best
 
 
@@ -65,6 +68,22 @@ def _width(line: str, separator: str) -> int:
     if len(cells) > 1 and not cells[-1].strip():
         cells.pop()
     return len(cells)
+
+
+def _count_numbers(lines: Sequence[str], separator: str) -> int:
+    """Number of the cells of lines that are numbers or empty with a separator.
+
+    Decimal commas part the cells of a table with semicolons into more cells, which are no numbers.
+    """
+    count = 0
+    for line in lines:
+        try:
+            cells = cells_of_line(line.strip("\r\n"), separator)
+        except csv.Error:
+            continue
+        if len(cells) > 1:
+            count += len(cells) - list(map(number_of_cell, cells, repeat(separator))).count(None)
+    return count
 
 
 def _share_of_width(lines: Sequence[str], separator: str, width: int) -> float:

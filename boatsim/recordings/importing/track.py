@@ -275,15 +275,16 @@ def _speed_contradiction(
     )
 
 
-def rate_in_degrees(g: Classification, heading: Classification) -> bool | None:
-    """Return whether a rate of turn is in degrees per second, by the changes of the heading.
+def unit_of_rate(g: Classification, heading: Classification) -> str | None:
+    """Return the unit of a rate of turn, by the changes of the heading.
 
     Args:
         g: The rate of turn, taken as rad/s.
         heading: The heading with its unit.
 
     Returns:
-        None if the rate does not follow the heading closely enough to show it.
+        "" for radians per second, "degps" or "degpmin"; None if the rate does not follow the
+        heading closely enough to show it.
     """
     t, rate = values_in_si(replace(g, word=""))
     at, psi = values_in_si(heading)
@@ -301,7 +302,9 @@ def rate_in_degrees(g: Classification, heading: Classification) -> bool | None:
     if size == 0.0 or abs(float(by_rate @ turned)) < MIN_RATE_CORRELATION * size:
         return None
     ratio = float(np.linalg.norm(by_rate) / np.linalg.norm(turned))
-    return bool(ratio > np.sqrt(np.degrees(1.0)))
+    units = ("", "degps", "degpmin")
+    factors = np.array([1.0, UNITS["degps"], UNITS["degpmin"]])
+    return units[int(np.argmin(np.abs(np.log(ratio * factors))))]
 
 
 def reason_poses_unusable(

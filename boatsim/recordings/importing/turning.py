@@ -8,7 +8,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.expression import parse
+from boatsim.recordings.importing.signal_classification import (
+    Classification,
+    has_opposite_sense,
+)
 
 TIME_DIGITS = 6  # decimals of a time [s]; two samples in one microsecond are one
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
@@ -39,11 +43,12 @@ class Turning:
                 t, values = _sorted_samples(g)
                 if column == "psi_rad" and len(t) > 2:
                     turn = 2.0 * np.pi
-                    if g.word == "deg":
-                        turn = 360.0
+                    if g.word:
+                        turn /= float(parse(f"x * {g.word}", ()).convert(np.ones(1))[0])
                     values = np.gradient(np.unwrap(values, period=turn), t)
                 is_compass = column == "psi_rad" and "yaw" not in g.tokens
-                if enu and not is_compass:
+                is_to_port = enu and not is_compass
+                if is_to_port or not enu and has_opposite_sense(column, g.tokens):
                     values = -values
                 self.t, self.r = t, values
                 return

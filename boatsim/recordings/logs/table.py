@@ -1,5 +1,6 @@
 """Reader of tables: Parquet, and CSV with any separator, comments and units."""
 
+import codecs
 import csv
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -18,16 +19,20 @@ from boatsim.recordings.importing.cells import (
     number_of_cell,
 )
 from boatsim.recordings.importing.clocks import (
+    calendar_times,
     seconds_and_fraction,
     time_column,
     times_in_seconds,
+    times_of_day_from_digits,
     unit_of_counted_times,
 )
 from boatsim.recordings.importing.coarse_times import spread_coarse_times
 from boatsim.recordings.importing.coordinates import (
+    HEMISPHERES,
     degrees_of_degrees_and_minutes,
     degrees_of_texts,
     kind_of_place,
+    places_of_hemispheres,
 )
 from boatsim.recordings.importing.dates import seconds_from_dates
 from boatsim.recordings.importing.log import (
@@ -85,18 +90,20 @@ def _log(
 ) -> Log:
     clock = time_column(columns, dates)
     t, how = _times(columns, clock)
-    if clock is None and not how:
+    has_times = clock is not None or bool(how)
+    if not has_times:
         how += ("no column holds times: rows are counted; the map can name it with `time`",)
     elif clock in dates or (clock and clock.startswith("column_")):
         how = (f"the times are those of column {clock}", *how)
     spread = None
-    if clock is not None:
+    if has_times:
         others = [values for name, values in columns.items() if name != clock]
         spread = spread_coarse_times(t, others)
     if spread is not None:
         t = spread.t
+        of_column = f" of column {clock}" if clock is not None else ""
         how += (
-            f"{spread.rows:g} rows share each time of column {clock}, every {spread.step:g} s; "
+            f"{spread.rows:g} rows share each time{of_column}, every {spread.step:g} s; "
             "they are spread evenly until the next time",
         )
     signals: dict[str, Signal] = {}
@@ -111,11 +118,17 @@ def _log(
 
 def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tuple[str, ...]]:
     """Times (N,) [s] of the rows, and remarks on the columns from which they follow."""
-    parts = seconds_and_fraction(columns, clock)
+    parts = calendar_times(columns)
+    if parts is None or clock not in (None, *parts.names):
+        parts = seconds_and_fraction(columns, clock)
     if parts is not None:
-        return parts.t, (f"the times are those of columns {parts.seconds} and {parts.fraction}",)
+        named = f"{', '.join(parts.names[:-1])} and {parts.names[-1]}"
+        return parts.t, (f"the times are those of columns {named}",)
     if clock is None:
         return np.arange(len(next(iter(columns.values()), ())), dtype=float), ()
+    of_day = times_of_day_from_digits(columns[clock])
+    if of_day is not None:
+        return of_day, (f"the times of column {clock} are read as hours, minutes and seconds",)
     counted = unit_of_counted_times(clock, columns[clock])
     if counted:
         step = float(np.nanmedian(np.diff(columns[clock])))
@@ -210,7 +223,12 @@ def _csv(path: Path) -> Log:
         if cells.are_dates:
             dates.append(name)
     remarks = (*head.remarks, *remarks, *_cell_remarks(path, head, columns, lines))
-    places = degrees_of_degrees_and_minutes(values, words)
+    signed = places_of_hemispheres(values, words)
+    values |= signed
+    for name in signed:
+        letters = "S" if kind_of_place(name) == "latitude" else "W"
+        remarks = (*remarks, f"{path}: {name} is negative: its hemisphere is {letters}")
+    places = degrees_of_degrees_and_minutes(values)
     if places:
         values |= places
         named = " and ".join(places)
@@ -360,14 +378,30 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
     empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
+        if _may_separate_thousands(column, separator):
+            return _column(name, column.to_pylist(), separator)
         return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
     except pa.ArrowException:
         return _column(name, column.to_pylist(), separator)
 
 
+def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
+    """Whether points may separate thousands, in a table with commas for decimals."""
+    from pyarrow import compute
+
+    if separator == ",":
+        return False
+    whole = compute.match_substring_regex(column, r"^\s*[+-]?\d{1,3}(\.\d{3})*\s*$")
+    pointed = compute.match_substring(column, ".")
+    return bool(compute.all(whole).as_py()) and bool(compute.any(pointed).as_py())
+
+
 def _column(name: str, cells: Sequence[str], separator: str) -> Cells:
     """Numbers of the text cells of a column; those of a place may have degrees and minutes."""
     found = column_of_cells(cells, separator)
+    if kind_of_place(name) and found.unit.upper() in HEMISPHERES:
+        sign = HEMISPHERES[found.unit.upper()]
+        return replace(found, values=sign * found.values, unit="")
     if kind_of_place(name) and not np.isfinite(found.values).any():
         degrees = degrees_of_texts(cells)
         if degrees is not None:
@@ -403,6 +437,8 @@ def _read_line_by_line(
 
 
 def _text(path: Path, found: bytes) -> str:
+    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return found[: len(found) // 2 * 2].decode("utf-16", errors="replace")
     if b"\0" in found[:4096]:
         raise file_error(path, "is not a text file")
     try:

@@ -8,8 +8,9 @@ import pytest
 
 from boatsim.diagnosis.candidates import program_to_replay
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.free_runs import free_runs, rms_errors
+from boatsim.diagnosis.prior_noise import prior_noise_levels
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.replay import fit_noise_only
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario

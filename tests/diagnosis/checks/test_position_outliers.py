@@ -14,6 +14,7 @@ from boatsim.diagnosis.checks.position_outliers import (
     outlier_rows_at_start,
 )
 from boatsim.physics import vessel
+from boatsim.recordings.notes import Notes
 from boatsim.recordings.table import Recording
 
 FINEST, LONGEST = 1e-4, 1.5  # [m], [s]
@@ -63,6 +64,22 @@ def test_what_a_boat_can_do_is_no_leap(noise: float) -> None:
 def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
     runs = [astray(recorded(Real(), s), 0.5) for s in (1, 2, 3)]
     nothing_missing(diagnosed(runs, tmp_path, "trial_boat"))
+
+
+def test_a_turn_that_begins_after_a_row_at_rest_is_no_outlier() -> None:
+    """After a dead time of a row the yaw rate is reached in a quarter of a row: a parabola through
+    the next eight headings misses the first one by more than six standard deviations."""
+    boat = vessel.load_vessel("trial_boat")
+    t, sd = 0.2 * np.arange(40), 5e-3
+    since = np.maximum(t - 0.2, 0.0)
+    heading = 0.3 * (since - 0.05 * (1.0 - np.exp(-since / 0.05)))
+    signals = {"psi_rad": heading, "x_m": 0.0 * t, "y_m": 0.0 * t}
+    run = Recording("turn", t, signals, notes=Notes(noise={"heading_sd_rad": sd}))
+    course = np.polyfit(t[1:9], heading[1:9], 2)
+    assert abs(np.polyval(course, 0.0)) > 10.0 * sd  # 6 sds of a prediction by eight fixes
+    assert outlier_rows_at_start(run, boat) == 0
+    heading[0] += 0.2
+    assert outlier_rows_at_start(run, boat) == 1
 
 
 @pytest.mark.slow

@@ -20,9 +20,11 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import simulate_manoeuvre
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_noise_levels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.fit import converge, fit, gauss_newton
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.diagnosis.search.screening import screen

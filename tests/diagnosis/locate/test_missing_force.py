@@ -14,7 +14,6 @@ from scipy.stats import kstest
 
 from boatsim.diagnosis.candidates import program_with_candidates
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.locate import missing_force as missing_force_module
 from boatsim.diagnosis.locate.missing_force import (
     missing_force,
@@ -37,7 +36,9 @@ from boatsim.diagnosis.locate.smoothing import (
     variance_of_average,
 )
 from boatsim.diagnosis.noise_levels import fit_latent_force_spectrum
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.evidence import unexplained_evidence
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics import vessel

@@ -8,7 +8,7 @@ from pushed_boat import BOAT, push, sail
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_noise_levels
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.open_set.confirmation import (
     Errors,
@@ -17,7 +17,9 @@ from boatsim.diagnosis.open_set.confirmation import (
     held_out_effect_errors,
 )
 from boatsim.diagnosis.open_set.consistency import Factor, effect_consistency
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

@@ -5,12 +5,13 @@ import pytest
 from pushed_boat import BOAT, sail
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
 from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.open_set.consistency import effect_consistency
 from boatsim.diagnosis.open_set.effect_axes import effect_axes
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem, prior_arrays
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

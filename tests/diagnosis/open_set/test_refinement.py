@@ -8,10 +8,11 @@ from pushed_boat import BOAT, Missing, sail
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.open_set.decision import Decision, decide
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

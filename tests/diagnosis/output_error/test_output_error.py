@@ -7,7 +7,7 @@ import pytest
 from pushed_boat import DAMPING, Missing, laid, push, sail
 
 from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
-from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.output_error.errors import output_errors
@@ -20,6 +20,7 @@ from boatsim.diagnosis.output_error.stage import (
     fit_to_simulations,
 )
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.search.screening import add_effect

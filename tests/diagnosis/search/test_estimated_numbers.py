@@ -7,8 +7,9 @@ import pytest
 from pushed_boat import BOAT, COMMANDS, sail
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.estimated_numbers import (
     candidates_for_absent_numbers,
     refining_candidates,

@@ -8,10 +8,12 @@ import pytest
 from pushed_boat import BOAT, Missing, push, sail
 
 from boatsim.diagnosis.candidates import candidate_library
-from boatsim.diagnosis.filter import MappedRecording, map_recording, prior_noise_levels
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import decide_recalibration
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
 from boatsim.diagnosis.search.generalization import harmed_groups
 from boatsim.diagnosis.search.group_harm import remove_harm_to_groups

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from pushed_boat import laid, push, sail
 
-from boatsim.diagnosis.filter import MappedRecording, map_recording
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.noise_levels import fit_latent_force_level, log_latent_force_prior
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search import validation as asked
 from boatsim.diagnosis.search.candidate_sets import CandidateSets

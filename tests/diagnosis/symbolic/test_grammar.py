@@ -17,10 +17,10 @@ from boatsim.diagnosis.answer.described_terms import described_entries
 from boatsim.diagnosis.candidates import candidate_library, diagnosis_program
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.description import FittedTerm
-from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.output import patched_vessel
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_loaded
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.symbolic import grammar
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from boatsim.diagnosis.filter import map_recording
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, make_motion
 from boatsim.physics.effects.ground_spring import GroundSpring

@@ -15,8 +15,8 @@ from scipy.integrate import solve_ivp
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.command_range import manoeuvre_commands
 from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
-from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.loading import open_recording
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, make_motion

@@ -10,10 +10,11 @@ import pytest
 from alike import long
 
 from boatsim.diagnosis.candidates import diagnosis_program
-from boatsim.diagnosis.filter import map_recording, prior_noise_levels
 from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.diagnosis.noise_levels import fit_noise
+from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.physics.content import shipped_content_names
 from boatsim.physics.debugging import DEBUG
 from boatsim.physics.effects.command_delay import CommandDelay

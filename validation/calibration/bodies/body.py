@@ -116,3 +116,20 @@ def boat_rates(state: Array, force: Array, inertia: Array, damping: Array) -> Ar
     turning = np.array([inertia[1] * v * r, -inertia[0] * u * r, (inertia[0] - inertia[1]) * u * v])
     speeds = (force + turning - damping * state[3:]) / inertia
     return np.array([u * c - v * k, u * k + v * c, r, *speeds])
+
+
+def pilot_force(
+    asked: Array, state: Array, haste: Sequence[float], brake: Sequence[float]
+) -> Array:
+    """Return the force and moment (3,) in body axes by which a pilot goes to a pose.
+
+    Args:
+        asked: North, east [m] and heading [rad].
+        state: North, east [m], heading [rad], u, v [m/s] and r [rad/s].
+        haste: Force per distance (3,) [N/m, N/m, N m/rad].
+        brake: Force per speed (3,) [N s/m, N s/m, N m s].
+    """
+    off = asked - state[:3]
+    c, k = np.cos(state[2]), np.sin(state[2])
+    own = np.array([off[0] * c + off[1] * k, off[1] * c - off[0] * k, off[2]])
+    return np.asarray(np.array(haste) * own - np.array(brake) * state[3:])

@@ -12,6 +12,7 @@ from validation.calibration.bodies.body import (
     ambient,
     boat_rates,
     integrate,
+    pilot_force,
     planar_forces,
     thrusters,
 )
@@ -62,7 +63,7 @@ def kept_place() -> Body:
         states, commands = [np.zeros(6)], []
         for i in range(len(times)):
             state = states[-1]
-            order = shares @ pilot_force(asked[int(times[i] / STAY)], state)
+            order = shares @ pilot_force(asked[int(times[i] / STAY)], state, HASTE, BRAKE)
             commands.append(np.clip(order, -FULL, FULL))
             if i == len(times) - 1:
                 break
@@ -80,11 +81,3 @@ def kept_place() -> Body:
         return signals | {f"{n}_N": own for n, own in zip(CORNERS, columns, strict=True)}
 
     return Body(vessel, times, noise, run, 4, longest_gap=8.0)
-
-
-def pilot_force(asked: Array, state: Array) -> Array:
-    """Return the force and moment (3,) in body axes by which a pilot goes to a pose (3,)."""
-    off = asked - state[:3]
-    c, k = np.cos(state[2]), np.sin(state[2])
-    own = np.array([off[0] * c + off[1] * k, off[1] * c - off[0] * k, off[2]])
-    return np.asarray(np.array(HASTE) * own - np.array(BRAKE) * state[3:])

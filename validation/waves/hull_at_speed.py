@@ -100,7 +100,7 @@ def undisturbed_heave(wet: Array, wave: Wave, density: float) -> complex:
     return -complex(up @ pressure.mean(axis=1))
 
 
-class MovingHull:
+class HullAtSpeed:
     """A hull with its coefficients at zero speed and its mass, about the mass centre.
 
     Attributes:
@@ -154,21 +154,15 @@ class MovingHull:
     def _row(self, w: float) -> int:
         return int(np.argmin(np.abs(self.found.frequency - w)))
 
-    def excitation(
-        self, wave: Wave, diffraction: bool = False, change: Complex | None = None
-    ) -> Complex:
+    def excitation(self, wave: Wave, diffraction: bool = False) -> Complex:
         """Return the complex excitation (6,) per amplitude at zero speed [N/m, N].
 
         Args:
             wave: The wave.
             diffraction: Whether it contains the moment in pitch of the diffraction at speed.
-            change: Change of the diffraction (6,) about the waterline, by the frequency of
-                encounter; None without it.
         """
         column = int(np.argmin(np.abs(self.found.heading - wave.direction)))
         own = self.found.excitation[self._row(wave.frequency), column]
-        if change is not None:
-            own = own + change
         force = self._lever().T @ own
         if diffraction:
             scattered = force[HEAVE] - undisturbed_heave(self._wet, wave, self.found.density)
@@ -181,7 +175,7 @@ class MovingHull:
         free: tuple[str, ...],
         method: str,
         diffraction: bool = False,
-        change: Complex | None = None,
+        excitation: Array | None = None,
     ) -> Complex:
         """Return the complex motion (6,) of the mass centre per amplitude [m/m, rad/m].
 
@@ -190,7 +184,8 @@ class MovingHull:
             free: Degrees of freedom that are not held.
             method: One of `ship_speed.METHODS`.
             diffraction: Whether the excitation contains the moment of the diffraction at speed.
-            change: Change of the diffraction (6,), as `excitation` takes it.
+            excitation: Excitation (6,) about the waterline that takes the place of that at rest;
+                None for that at rest.
         """
         w = wave.encounter
         added, damping = self.coefficients(w)
@@ -202,6 +197,8 @@ class MovingHull:
         dynamic[ROLL, ROLL] += 1j * w * self.loading.roll_damping * critical
         places = [AXES.index(axis) for axis in free]
         found = np.zeros(len(AXES), dtype=np.complex128)
-        force = self.excitation(wave, diffraction, change)[places]
-        found[places] = np.linalg.solve(dynamic[np.ix_(places, places)], force)
+        force = self.excitation(wave, diffraction)
+        if excitation is not None:
+            force = np.asarray(self._lever().T @ excitation, dtype=np.complex128)
+        found[places] = np.linalg.solve(dynamic[np.ix_(places, places)], force[places])
         return found
