@@ -503,8 +503,10 @@ def test_the_command_notes_what_it_does_not_use(tmp_path: Path) -> None:
         (["{load}", "--vessel", "otter"], "--vessel and --load apply to tables of motions"),
         (
             ["{mesh}", "--vessel", "otter", "--draught", "1"],
-            "--vessel, --load and --speed apply to tables",
+            "--vessel and --load apply to tables",
         ),
+        (["{mesh}", "--draught", "1", "--speed", "1"], "--speed applies to meshes (.stl, .obj"),
+        (["{mesh}", "--draught", "1", "--speed", "-1"], "--speed"),
         (["{mesh}"], "--draught is required for a mesh"),
         (["{other}", "--draught", "1"], "tables of response amplitude operators (.2, .3, .4"),
     ],

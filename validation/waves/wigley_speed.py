@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS
 from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 from validation.waves.wigley import (
     DENSITY,
     DRAUGHT,
