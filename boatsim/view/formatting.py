@@ -22,6 +22,7 @@ FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
 NO_ODDS = "–"  # in a table, where the better fit may be chance
 OF_CHANCE = " that the better fit is chance"
+LONGEST_ODDS = 1e6
 # least evidence [nats] and its strength: R. E. Kass, A. E. Raftery, Bayes Factors, J. Am. Stat.
 # Assoc. 90, 1995, section 3.2 (Bayes factors of 3, 20 and 150)
 STRENGTHS = ((5.0, "very strong"), (3.0, "strong"), (1.1, "positive"), (0.0, "slight"))
@@ -42,7 +43,9 @@ def join_words(words: Iterable[str], last: str = "and") -> str:
 
 
 def capitalize(words: str) -> str:
-    """Return text with its first letter capitalised and the rest unchanged."""
+    """Return text with its first letter capitalised, unless it begins with the name of a column."""
+    if "_" in words.split(" ", 1)[0]:
+        return words
     return words[:1].upper() + words[1:]
 
 
@@ -97,14 +100,15 @@ def format_odds(log_bayes_factor: float) -> str:
 
     Returns:
         Words such as "1 in 55 that the better fit is chance": the Bayes factor is exp(evidence).
+        Odds beyond a million are not stated: they would say more of the assumed distribution of
+        the errors than of the boat.
     """
     if log_bayes_factor < math.log(2.0):
         return "the better fit may be chance"
-    if log_bayes_factor < math.log(1e6):
+    if log_bayes_factor < math.log(LONGEST_ODDS):
         odds = float(f"{math.exp(log_bayes_factor):.1e}")
         return f"1 in {odds:,.0f}{OF_CHANCE}"
-    power = math.floor(log_bayes_factor / math.log(10.0))
-    return f"less than 1 in {_power_of_ten(power)}{OF_CHANCE}"
+    return f"less than 1 in a million{OF_CHANCE}"
 
 
 def evidence_strength(log_bayes_factor: float) -> str:

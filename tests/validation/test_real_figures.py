@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.real.figures import velocities_held
+from boatsim.diagnosis.free_runs import FreeRun
+from validation.real import torque_pendulum
+from validation.real.figures import error_rows, velocities_held
 
 
 def recording(signals: dict[str, int], coordinates: int) -> Any:
@@ -36,3 +38,25 @@ def test_other_coordinates_keep_their_rates() -> None:
     mapped = recording({"phi_rad": 0}, 1)
     held = velocities_held(mapped, np.array([0.2, -0.3]), np.array([1.0, 3.0]))
     assert held["phi_rad"] == pytest.approx([0.2, -0.4])
+
+
+def test_medians_over_windows_make_a_row_with_velocities_held(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Windows in which nothing moves do not count; the median of the others is printed."""
+    t = np.linspace(0.0, 1.0, 11)
+
+    def window(moved: float, off: float) -> FreeRun:
+        recorded = {"phi_rad": moved * t}
+        channels = {"recorded": recorded}
+        for k, model in enumerate(torque_pendulum.COMPARED):
+            channels[model] = {"phi_rad": recorded["phi_rad"] + (k + 1) * off}
+        return FreeRun("run", 0.0, t, channels)
+
+    windows = [window(1.0, 0.1), window(2.0, 0.3), window(3.0, 0.2), window(0.0, 9.0)]
+    monkeypatch.setattr(torque_pendulum, "compared_free_runs", lambda *_: windows)
+    none: Any = None
+    medians = torque_pendulum.median_errors(none, [], 1.0)
+    assert list(medians.values()) == pytest.approx([0.2, 0.4, 0.6, 0.8])
+    rows = error_rows("1 s", {"roll": medians}, {"roll": ("roll [rad]", 1.0)})
+    assert rows == [["roll [rad], 1 s", "0.20", "0.40", "0.60", "0.80", "1.33"]]

@@ -18,9 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.free_runs import FreeRun, free_runs
+from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.recordings.importing.convert import convert_log
@@ -37,7 +36,9 @@ from validation.real.common import (
     runs_of,
 )
 from validation.real.figures import (
+    HELD,
     Figures,
+    compared_free_runs,
     diagnose_set,
     print_figures,
     split_groups,
@@ -48,6 +49,7 @@ VESSEL = "pendulum"
 GROUPS = {"0.546 kg": ("ddp", "ilqr", "pd_fail", "pd_sysid")}
 HEAVY = "energy_1kg"  # the only run of its group, fitted as a whole
 WINDOWS = (0.5, 1.0)  # [s]
+COMPARED = (HELD, *MODELS)
 MOVES = 0.2  # [rad] smallest range of the recorded roll in a window that counts
 # The map that `boatsim import --propose` writes for these logs and the vessel, unchanged
 MAP = """\
@@ -82,13 +84,13 @@ def converted(runs: Sequence[Path], folder: Path = OUT / NAME / "raw") -> dict[s
 
 
 def window_errors(run: FreeRun) -> dict[str, float]:
-    """Return the rms error of roll [rad] of each model in one window; empty if it does not move."""
+    """Return the rms error of roll [rad] of each model in a window; empty if nothing moves."""
     phi = run.channels["recorded"]["phi_rad"]
     phi = phi[np.isfinite(phi)]
     if not len(phi) or float(np.ptp(phi)) < MOVES:
         return {}
     errors = {}
-    for model in MODELS:
+    for model in COMPARED:
         (off,) = run.deviations(model, ("phi_rad",))
         errors[model] = float(np.sqrt(np.nanmean(off**2)))
     return errors
@@ -99,15 +101,16 @@ def median_errors(
 ) -> dict[str, float]:
     """Return the median over windows of the rms error of roll [rad] by model.
 
+    Velocities held are a model, too.
+
     Args:
         diagnosis: The diagnosis whose three models are compared.
         runs: Held-out runs, mapped to its program.
         window: Length of each free run [s].
     """
-    fits = compared_fits(diagnosis.ranking)
-    windows = filter(None, map(window_errors, free_runs(diagnosis.problem, fits, runs, window)))
-    rows = [[errors[model] for model in MODELS] for errors in windows]
-    return dict(zip(MODELS, np.median(rows, axis=0).tolist(), strict=True))
+    windows = filter(None, map(window_errors, compared_free_runs(diagnosis, runs, window)))
+    rows = [[errors[model] for model in COMPARED] for errors in windows]
+    return dict(zip(COMPARED, np.median(rows, axis=0).tolist(), strict=True))
 
 
 def with_medians(figures: Figures) -> Figures:

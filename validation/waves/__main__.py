@@ -15,6 +15,8 @@ from validation.waves import (
     drift,
     dtmb5415,
     hemisphere,
+    kcs,
+    kcs_tables,
     response,
     righting_arms,
     s175,
@@ -700,6 +702,7 @@ def main() -> None:
     parser.add_argument("--work", type=Path, default=WORK, help="working folder")
     parser.add_argument("--mss", type=Path, help="folder of the MSS toolbox")
     parser.add_argument("--navaltoolbox", type=Path, help="folder of navaltoolbox-lib")
+    parser.add_argument("--kcs", type=Path, help="folder with kcs.fix, offsets of the KCS")
     given = parser.parse_args()
     folder = given.work
     has_capytaine = find_spec("capytaine") is not None and find_spec("trimesh") is not None
@@ -725,6 +728,10 @@ def main() -> None:
             print_ship_motions(toolbox)
     else:
         print("surface combatant: skipped, --navaltoolbox names the folder of navaltoolbox-lib")
+    if given.kcs is not None and (given.kcs / kcs.OFFSETS).is_file():
+        kcs_tables.print_ship(given.kcs, folder, has_capytaine)
+    else:
+        print("container ship KCS: skipped, --kcs names the folder with its offsets kcs.fix")
     print_regular(folder)
     print_irregular(folder)
     if has_capytaine and section.RUNS.is_dir():
