@@ -233,12 +233,20 @@ def test_water_of_finite_depth_is_interpolated_where_capytaine_has_no_solution(
 
 def test_the_command_writes_the_excitation_at_the_speed(wigley: Solved, tmp_path: Path) -> None:
     words = ["--draught", str(DRAUGHT), "--density", str(DENSITY), "--panel", "0"]
-    words += ["--frequencies", "8", "--headings", "5", "--no-compare"]
+    words += ["--frequencies", "8", "--headings", "5", "--no-compare", "--centre-depth", "0.1"]
     folders = tmp_path / "rest", tmp_path / "moving"
     for folder, speed in zip(folders, ("0", f"{SPEED}"), strict=True):
         done = CliRunner().invoke(
             app,
-            ["hydrodynamics", str(wigley.hull.mesh), *words, "--speed", speed, "--out", str(folder)],
+            [
+                "hydrodynamics",
+                str(wigley.hull.mesh),
+                *words,
+                "--speed",
+                speed,
+                "--out",
+                str(folder),
+            ],
             catch_exceptions=False,
         )
         assert done.exit_code == 0, done.output
