@@ -159,7 +159,7 @@ def print_wigley_speed(folder: Path) -> None:
         "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
     )
     print(
-        "the diffraction at forward speed too, which panel_wave_loads leaves out; encounter: with"
+        "the diffraction at forward speed too, which loads at rest leave out; encounter: with"
     )
     print("the diffraction at the frequency of encounter too")
     print(

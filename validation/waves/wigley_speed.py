@@ -4,7 +4,7 @@ The radiation is computed from coefficients at zero speed in three ways: with no
 the frequency of encounter, with the equations in body axes, and with the terms of `forward_speed`
 of `radiation_memory` in addition, which make them those of strip theory. The excitation is that at
 zero speed, with the frequency of encounter; strip theory adds the moment -U / (i w_e) of the
-diffraction force in heave, which `panel_wave_loads` leaves out, and takes the diffraction at the
+diffraction force in heave, which loads at rest leave out, and takes the diffraction at the
 frequency of encounter (`speed_diffraction`).
 """
 
