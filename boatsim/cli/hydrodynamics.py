@@ -291,18 +291,32 @@ def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients,
         found = computation.compute_coefficients(
             hull, frequencies, headings, ballast, report_frequency, options.speed
         )
+        lines = _unresolved(panel, frequencies[-1], options.speed)
         panels = int(found.source.split(" panels")[0].split()[-1])
         if not options.compare or panels > FINEST:
-            return found, []
+            return found, lines
         some = frequencies[:: max(1, (len(frequencies) - 1) // (STUDIED - 1))][:STUDIED]
         study = computation.study_mesh(hull, some, ballast, report_frequency, options.speed)
-    lines = [
+    lines.append(
         f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to "
         "the largest value of the axis,"
-    ]
+    )
     for name, (change, axis) in study.change.items():
         lines.append(f"  {name} by at most {100.0 * change:.1f} % ({axis})")
     return found, lines
+
+
+def _unresolved(panel: float, highest: float, speed: float) -> list[str]:
+    """Line on waves whose scattered waves at a speed are too short for the panels, or none."""
+    if speed == 0.0 or panel == 0.0:
+        return []
+    limit = computation.highest_resolved(panel, speed)
+    if limit >= highest:
+        return []
+    return [
+        f"above {limit:.3g} rad/s the panels of {panel:.3g} m are too long for the waves that the "
+        f"hull scatters ahead at {speed:g} m/s; give a shorter --panel or a lower --highest"
+    ]
 
 
 def _largest_drift(found: Coefficients, drift: Array) -> str:

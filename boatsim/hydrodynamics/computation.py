@@ -34,6 +34,7 @@ MESHES = (".stl", ".obj", ".ply")
 # the excitation is small; the panels must be short against the shortest
 LONGEST, SHORTEST = 20.0, 0.5
 PANELS_PER_WAVE = 8.0  # of the shortest wave; with half as many the errors reach 10 %
+FEWEST_PANELS = 4.0  # of a scattered wave: the half of them, below which a note is printed
 FREQUENCIES, HEADINGS = 30, 13  # default numbers; headings every 15 degrees
 MOST_PANELS = 6000  # the matrices of this many need some 2 GB
 Report = Callable[[str, float], None]
@@ -146,6 +147,21 @@ def default_panel(length: float) -> float:
         length: Length of the hull [m].
     """
     return SHORTEST * length / PANELS_PER_WAVE
+
+
+def highest_resolved(panel: float, speed: float) -> float:
+    """Return the frequency of waves from ahead whose scattered waves are four panels long [rad/s].
+
+    At a speed the hull meets waves from ahead at a higher frequency, at which they are scattered as
+    shorter waves. The dispersion is that of deep water, which such short waves have.
+
+    Args:
+        panel: Longest edge of a panel [m].
+        speed: Forward speed [m/s], above 0.
+    """
+    met = float(np.sqrt(2.0 * np.pi * GRAVITY / (FEWEST_PANELS * panel)))
+    tau = speed * met / GRAVITY
+    return 2.0 * met / (1.0 + float(np.sqrt(1.0 + 4.0 * tau)))
 
 
 def run_capytaine(

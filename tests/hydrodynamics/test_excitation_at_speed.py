@@ -23,6 +23,7 @@ from boatsim.hydrodynamics.computation import (
     MOST_PANELS,
     HullMesh,
     coefficients_of_rows,
+    highest_resolved,
     run_capytaine,
     with_excitation_at_speed,
 )
@@ -231,8 +232,16 @@ def test_water_of_finite_depth_is_interpolated_where_capytaine_has_no_solution(
     assert np.isfinite(force).all()
 
 
+def test_waves_from_ahead_are_scattered_as_shorter_ones() -> None:
+    panel = 0.1
+    met = float(np.sqrt(2.0 * pi * GRAVITY / (4.0 * panel)))
+    w = highest_resolved(panel, SPEED)
+    assert w + w * w / GRAVITY * SPEED == pytest.approx(met, rel=1e-12)
+    assert highest_resolved(panel, 1e-9) == pytest.approx(met, rel=1e-6)
+
+
 def test_the_command_writes_the_excitation_at_the_speed(wigley: Solved, tmp_path: Path) -> None:
-    words = ["--draught", str(DRAUGHT), "--density", str(DENSITY), "--panel", "0"]
+    words = ["--draught", str(DRAUGHT), "--density", str(DENSITY), "--panel", "0.6"]
     words += ["--frequencies", "8", "--headings", "5", "--no-compare", "--centre-depth", "0.1"]
     folders = tmp_path / "rest", tmp_path / "moving"
     for folder, speed in zip(folders, ("0", f"{SPEED}"), strict=True):
@@ -251,6 +260,7 @@ def test_the_command_writes_the_excitation_at_the_speed(wigley: Solved, tmp_path
         )
         assert done.exit_code == 0, done.output
         printed = " ".join(done.output.split())
+        assert ("too long for the waves that the hull scatters ahead" in printed) == (speed != "0")
         assert (f"excitation at a forward speed of {SPEED:g} m/s" in printed) == (speed != "0")
     rest, moving = map(read_coefficients, folders)
     assert (rest.speed, moving.speed) == (0.0, pytest.approx(SPEED))
