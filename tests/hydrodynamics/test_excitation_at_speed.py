@@ -1,5 +1,6 @@
 """Excitation at a forward speed: limits, symmetries and reciprocity, where Capytaine is installed."""
 
+from dataclasses import replace
 from math import pi
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -29,9 +30,14 @@ from boatsim.hydrodynamics.computation import (
 )
 from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
 from boatsim.physics.base import Array
-from boatsim.physics.coefficients.files import read_coefficients
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.files import read_coefficients, write_wave_loads
+from boatsim.physics.coefficients.table import Coefficients, WaveLoads
+from boatsim.physics.effects.panel_wave_loads import PanelWaveLoads
+from boatsim.physics.effects.radiation_memory import RadiationMemory
 from boatsim.physics.particulars import GRAVITY
+from boatsim.simulate.wave_response import wave_response
+from validation.waves.hulls import write_catamaran
+from validation.waves.response import FloatingCatamaran
 from validation.waves.ship_speed import speed_terms
 from validation.waves.wigley import DENSITY, DRAUGHT, HULLS, LENGTH, write_hull
 
@@ -83,13 +89,15 @@ def met_force(wigley: Solved, wave: MetWave) -> Array:
     return np.asarray(force)
 
 
+@pytest.mark.slow
 def test_without_speed_the_excitation_is_that_at_rest(wigley: Solved) -> None:
     w, headings = wave_of(1.3), [0.0, 0.8, BEAM, 2.5, HEAD]
     at_rest = computed(wigley.hull, [w], headings, 0.0)
     assert at_rest.speed == 0.0
     waves = waves_at_speed(wigley.body, w, [-one for one in headings], 0.0, DEEP_WATER)
     pairs = np.array(excitation_at_speed(wigley.solver, wigley.body, waves, DEEP_WATER))
-    found = excitation_to_sname(pairs[..., 0] + 1j * pairs[..., 1], conjugate=True)
+    values: Array = np.asarray(pairs[..., 0] + 1j * pairs[..., 1])
+    found = excitation_to_sname(values, conjugate=True)
     size = np.abs(at_rest.excitation[0]).max()
     assert found == pytest.approx(at_rest.excitation[0], rel=1e-9, abs=1e-9 * size)
     # at a speed the other results are the same to the last bit
@@ -102,6 +110,7 @@ def test_without_speed_the_excitation_is_that_at_rest(wigley: Solved) -> None:
     assert "excitation_at_speed" in moving[1] and "excitation_at_speed" not in still[1]
 
 
+@pytest.mark.slow
 def test_in_beam_waves_speed_adds_the_moments_of_the_scattered_waves_alone(wigley: Solved) -> None:
     capytaine = pytest.importorskip("capytaine")
     from capytaine.bem.airy_waves import froude_krylov_force
@@ -124,6 +133,7 @@ def test_in_beam_waves_speed_adds_the_moments_of_the_scattered_waves_alone(wigle
     assert abs(moving[PITCH] - still[PITCH]) > 0.1 * abs(still[PITCH])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("heading", [HEAD, 0.0])
 def test_long_waves_lift_the_hull_by_its_waterplane_and_carry_it_along(
     wigley: Solved, heading: float
@@ -240,6 +250,7 @@ def test_waves_from_ahead_are_scattered_as_shorter_ones() -> None:
     assert highest_resolved(panel, 1e-9) == pytest.approx(met, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_excitation_at_the_speed(wigley: Solved, tmp_path: Path) -> None:
     words = ["--draught", str(DRAUGHT), "--density", str(DENSITY), "--panel", "0.6"]
     words += ["--frequencies", "8", "--headings", "5", "--no-compare", "--centre-depth", "0.1"]
@@ -263,9 +274,42 @@ def test_the_command_writes_the_excitation_at_the_speed(wigley: Solved, tmp_path
         assert ("too long for the waves that the hull scatters ahead" in printed) == (speed != "0")
         assert (f"excitation at a forward speed of {SPEED:g} m/s" in printed) == (speed != "0")
     rest, moving = map(read_coefficients, folders)
-    assert (rest.speed, moving.speed) == (0.0, pytest.approx(SPEED))
+    assert rest.speed == 0.0 and moving.speed == pytest.approx(SPEED)
     assert "speed" not in (folders[0] / "coefficients.toml").read_text()
     for name in ("radiation.csv", "memory.csv", "drift.csv"):
         assert (folders[0] / name).read_bytes() == (folders[1] / name).read_bytes()
     difference = np.abs(moving.excitation - rest.excitation).max(axis=(0, 1))
     assert np.all(difference > 0.01 * np.abs(rest.excitation).max(axis=(0, 1)))
+
+
+@pytest.mark.slow
+def test_a_simulated_boat_at_speed_follows_the_surface_of_long_waves(tmp_path: Path) -> None:
+    """The moments of radiated and scattered waves cancel in the simulation too."""
+    pytest.importorskip("capytaine")
+    pytest.importorskip("trimesh")
+    speed, period, headings = 1.1, 4.5, [0.0, 0.25 * pi, BEAM, 0.75 * pi, HEAD]
+    write_catamaran(tmp_path / "catamaran.stl")
+    catamaran = FloatingCatamaran()
+    own = catamaran.coefficients
+    hull = HullMesh(tmp_path / "catamaran.stl", own.draught, density=own.density, panel=0.25)
+    loads = computed(hull, [1.2, 1.4, 1.6, 1.8], headings, speed)
+    table = WaveLoads(
+        "long waves", 0.0, loads.frequency, loads.heading, loads.excitation, speed=speed
+    )
+    write_wave_loads(tmp_path / "loads", table)
+    boat = catamaran.vessel(tmp_path / "boat", ("surge", "heave", "pitch"))
+    boat = boat.without_effect("ground_spring")
+    effects = []
+    for effect in boat.effects:
+        if isinstance(effect, RadiationMemory):
+            effect = replace(effect, forward_speed=1.0)
+        if isinstance(effect, PanelWaveLoads):
+            effect = replace(effect, coefficients=str(tmp_path / "loads"))
+        effects.append(effect)
+    boat = replace(boat, effects=tuple(effects))
+    found = wave_response(boat, [0.0, HEAD], [period], 0.002, speed=speed)
+    assert found.steady.all()
+    k = (2.0 * pi / period) ** 2 / GRAVITY
+    for row, direction in zip(found.operators[:, 0], (1.0, -1.0), strict=True):
+        assert row[1] == pytest.approx(-1.0, abs=0.03)
+        assert row[2] / k == pytest.approx(-1j * direction, abs=0.12)
