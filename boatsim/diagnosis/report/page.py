@@ -129,10 +129,10 @@ def report_markdown(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def _headline(f: Findings) -> str:
-    """Return the sentence of the answer, or only names of effects and forces where it is long."""
+    """Return the answer, or names of effects and forces or its first sentence where it is long."""
     whole = _sentence(f)
     if blames_log(f.answer):
-        return f"{whole.partition('. ')[0]}."
+        return first_sentence(whole)
     if len(whole) <= LONGEST_HEADLINE:
         return whole
     if names := [name_in_words(e["name"]) for e in f.answer["effects"]]:
@@ -147,8 +147,13 @@ def _headline(f: Findings) -> str:
         if force not in forces:
             forces.append(force)
     if not forces:
-        return whole
+        return first_sentence(whole)
     return f"{capitalize(join_words(forces))} that no candidate effect explains."
+
+
+def first_sentence(text: str) -> str:
+    """Return the first sentence of a text."""
+    return f"{text.partition('. ')[0].removesuffix('.')}."
 
 
 def _lead(f: Findings) -> str:
@@ -156,9 +161,8 @@ def _lead(f: Findings) -> str:
     headline, whole = _headline(f), _sentence(f)
     if whole == headline:
         return ""
-    if not blames_log(f.answer):
-        return whole
-    return f"{CORRECT_FIRST} {whole.removeprefix(headline).strip()}"
+    rest = whole.removeprefix(headline).strip()
+    return f"{CORRECT_FIRST} {rest}" if blames_log(f.answer) else rest
 
 
 def _sentence(f: Findings) -> str:

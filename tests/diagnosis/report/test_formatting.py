@@ -1,9 +1,12 @@
 """Texts of reports: odds and words."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from boatsim.diagnosis.report import page
 from boatsim.view.formatting import capitalize, format_odds
 
 
@@ -24,3 +27,12 @@ def test_odds_are_stated_as_far_as_a_recording_can_show_them(nats: float, odds: 
 def test_a_sentence_begins_with_a_capital_but_a_column_keeps_its_name() -> None:
     assert capitalize("the heading is late") == "The heading is late"
     assert capitalize("x_m, y_m were logged late") == "x_m, y_m were logged late"
+
+
+def test_a_long_answer_without_names_has_its_first_sentence_as_the_headline() -> None:
+    first = "A force is missing that no candidate effect explains (33 N rms in surge)."
+    rest = "Seven numbers of the rough model were refined. " * 6
+    answer = {"sentence": f"{first} {rest.strip()}", "effects": [], "described": []}
+    findings: Any = SimpleNamespace(answer={**answer, "unknown": {"flag": True}}, words={})
+    assert page._headline(findings) == first
+    assert page._lead(findings) == rest.strip()
