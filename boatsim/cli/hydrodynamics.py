@@ -54,7 +54,8 @@ class HydrodynamicsOptions:
         out: Folder to write; None for `hydrodynamics` next to the hull.
         vessel: Vessel that moves as a table of motions states; None for another file.
         loads: Its load conditions.
-        speed: Forward speed of a table of response amplitude operators [m/s].
+        speed: Forward speed of the excitation of a mesh, or of a table of response amplitude
+            operators [m/s].
     """
 
     draught: float | None
@@ -95,14 +96,19 @@ def write_hydrodynamics(hull: Path, options: HydrodynamicsOptions) -> int:
     out = options.out or hull.parent / FOLDER
     if hull.suffix.lower() in OPERATORS:
         return _write_operators(hull, options, out)
-    if options.vessel is not None or options.loads or options.speed != 0.0:
+    if options.vessel is not None or options.loads:
         raise BadInput(
-            f"{hull}: --vessel, --load and --speed apply to tables of response amplitude operators "
+            f"{hull}: --vessel and --load apply to tables of response amplitude operators "
             f"({', '.join(OPERATORS)})"
         )
     notes: list[str] = []
     if hull.suffix.lower() in computation.MESHES:
         found, notes = _from_mesh(hull, options)
+    elif options.speed != 0.0:
+        raise BadInput(
+            f"{hull}: --speed applies to meshes ({', '.join(computation.MESHES)}) and to tables of "
+            f"response amplitude operators ({', '.join(OPERATORS)})"
+        )
     else:
         found = with_memory(_from_output(hull, options))
     renamed = write_coefficients(out, found)
@@ -151,12 +157,18 @@ def _write_operators(path: Path, options: HydrodynamicsOptions, out: Path) -> in
         raise BadInput(f"{path}: --vessel and --load apply to tables of motions; these are loads")
     if table.speed > 0.0:
         words += f" at {table.speed:g} m/s"
-    renamed = write_wave_loads(
-        out,
-        WaveLoads(
-            words, table.depth, table.frequency, table.heading, np.asarray(loads), table.drift
-        ),
+    # loads of motions belong to the vessel, whose equations contain the effects of speed
+    speed = table.speed if table.kind == "load" else 0.0
+    converted = WaveLoads(
+        source=words,
+        depth=table.depth,
+        frequency=table.frequency,
+        heading=table.heading,
+        excitation=np.asarray(loads),
+        drift=table.drift,
+        speed=speed,
     )
+    renamed = write_wave_loads(out, converted)
     notes += _renaming(out, renamed)
     kinds = f"loads in {', '.join(axes)}"
     if table.drift is not None:
@@ -277,20 +289,34 @@ def _from_mesh(path: Path, options: HydrodynamicsOptions) -> tuple[Coefficients,
             report("Capytaine", share, stage)
 
         found = computation.compute_coefficients(
-            hull, frequencies, headings, ballast, report_frequency
+            hull, frequencies, headings, ballast, report_frequency, options.speed
         )
+        lines = _unresolved(panel, frequencies[-1], options.speed)
         panels = int(found.source.split(" panels")[0].split()[-1])
         if not options.compare or panels > FINEST:
-            return found, []
+            return found, lines
         some = frequencies[:: max(1, (len(frequencies) - 1) // (STUDIED - 1))][:STUDIED]
-        study = computation.study_mesh(hull, some, ballast, report_frequency)
-    lines = [
+        study = computation.study_mesh(hull, some, ballast, report_frequency, options.speed)
+    lines.append(
         f"convergence: {study.panels[1]} panels instead of {study.panels[0]} change, relative to "
         "the largest value of the axis,"
-    ]
+    )
     for name, (change, axis) in study.change.items():
         lines.append(f"  {name} by at most {100.0 * change:.1f} % ({axis})")
     return found, lines
+
+
+def _unresolved(panel: float, highest: float, speed: float) -> list[str]:
+    """Line on waves whose scattered waves at a speed are too short for the panels, or none."""
+    if speed == 0.0 or panel == 0.0:
+        return []
+    limit = computation.highest_resolved(panel, speed)
+    if limit >= highest:
+        return []
+    return [
+        f"above {limit:.3g} rad/s the panels of {panel:.3g} m are too long for the waves that the "
+        f"hull scatters ahead at {speed:g} m/s; give a shorter --panel or a lower --highest"
+    ]
 
 
 def _largest_drift(found: Coefficients, drift: Array) -> str:
@@ -309,6 +335,10 @@ def _summary(found: Coefficients) -> list[str]:
         f"{len(found.frequency)} frequencies from {found.frequency[0]:.3g} to "
         f"{found.frequency[-1]:.3g} rad/s, {len(found.heading)} headings",
     ]
+    if found.speed > 0.0:
+        lines.append(
+            f"excitation at a forward speed of {found.speed:g} m/s; all other coefficients at rest"
+        )
     if found.volume > 0.0:
         lines.append(
             f"displaces {found.volume:.6g} m^3, {found.volume * found.density:.6g} kg; centre of "

@@ -11,7 +11,7 @@ line, so that an interrupted computation continues where it ended. Progress is p
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 AXES = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
 # Share of the hull's size, to the power of the quantity, by which the sides may differ. Half of a
@@ -26,6 +26,32 @@ DEEP = 4.5
 # Angles of a Kochin function beyond four times the wave number times the radius of the hull: its
 # square has twice the order of the function, whose terms decay fast above that product
 ANGLES = 48
+# Share of the frequency of a wave below which its frequency of encounter counts as near zero. The
+# scattered waves are then longer than a hundred waves of the sea, and the potential differs from
+# that of a rigid surface by about a hundredth of what waves at the frequency of the sea change
+NEAR_ZERO = 0.1
+# Product of wave number and depth below which the scattered waves are taken as near zero too:
+# Capytaine 3.0 has no Green function for water of finite depth below 0.139
+SHALLOW = 0.15
+# Relative difference up to which a frequency of encounter is that of the wave, as in beam waves,
+# whose cosine is rounded. Their matrix is then the one of the radiation
+SAME_FREQUENCY = 1e-12
+
+
+class MetWave(NamedTuple):
+    """A wave that a hull under way meets.
+
+    Attributes:
+        frequency: Frequency of the wave [rad/s].
+        encounter: Frequency at which the hull meets it [rad/s], negative if the hull overtakes it.
+        heading: Direction to which it runs, relative to the hull [rad].
+        speed: Forward speed [m/s].
+    """
+
+    frequency: float
+    encounter: float
+    heading: float
+    speed: float
 
 
 def triangles_of(request: dict[str, Any]) -> tuple[Any, Any]:
@@ -253,6 +279,160 @@ def excitation(
     return found, kochin
 
 
+def encounter_frequency(wave: MetWave, number: float) -> float:
+    """Return the frequency at which a hull under way meets a wave [rad/s], w - k U cos beta.
+
+    Args:
+        wave: The wave; its field `encounter` is not used.
+        number: Wave number [rad/m].
+    """
+    import numpy as np
+
+    change = number * wave.speed * np.cos(wave.heading)
+    if abs(change) < SAME_FREQUENCY * wave.frequency:
+        return wave.frequency
+    return float(wave.frequency - change)
+
+
+def waves_at_speed(
+    body: Any, frequency: float, headings: list[float], speed: float, water: dict[str, Any]
+) -> list[MetWave]:
+    """Return the waves of one frequency as a hull under way meets them.
+
+    Args:
+        body: The wetted hull.
+        frequency: Angular frequency of the waves [rad/s].
+        headings: Directions to which they run, counter-clockwise from x [rad].
+        speed: Forward speed [m/s].
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    import capytaine
+
+    own = water_of_waves(frequency, water)
+    number = capytaine.DiffractionProblem(body=body, omega=frequency, **own).wavenumber
+    found = []
+    for heading in headings:
+        wave = MetWave(frequency, frequency, heading, speed)
+        found.append(wave._replace(encounter=encounter_frequency(wave, number)))
+    return found
+
+
+def least_encounter(frequency: float, water: dict[str, Any]) -> float:
+    """Return the frequency of encounter below which the scattered waves are interpolated [rad/s].
+
+    Args:
+        frequency: Frequency of the wave [rad/s].
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    import numpy as np
+
+    shallow = float(np.sqrt(water["g"] / water["water_depth"] * SHALLOW * np.tanh(SHALLOW)))
+    return min(max(NEAR_ZERO * frequency, shallow), frequency)
+
+
+def scattered_impulse(
+    solver: Any, body: Any, condition: Any, encounter: float, water: dict[str, Any]
+) -> Any:
+    """Return the impulse J (6,) of scattered waves, whose force is -i w_e J, without speed [N s].
+
+    At a negative frequency of encounter the potential is the complex conjugate of that of the
+    conjugate condition at the positive frequency: the waves run away from the hull in both.
+
+    Args:
+        solver: Capytaine's solver.
+        body: The wetted hull.
+        condition: Normal velocity on the panels of hull and lid.
+        encounter: Frequency of encounter [rad/s], not zero.
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    import numpy as np
+    from capytaine.bem.problems_and_results import LinearPotentialFlowProblem
+
+    frequency = abs(encounter)
+    if encounter < 0.0:
+        condition = np.conj(condition)
+    problem = LinearPotentialFlowProblem(
+        body=body,
+        omega=frequency,
+        boundary_condition=condition,
+        **water_of_waves(frequency, water),
+    )
+    forces = solver.solve(problem).forces
+    impulse = np.array([forces[axis] for axis in AXES]) / (-1j * frequency)
+    if encounter < 0.0:
+        return np.conj(impulse)
+    return impulse
+
+
+def met_excitation(solver: Any, body: Any, wave: MetWave, water: dict[str, Any]) -> Any:
+    """Return the excitation (6,) of a wave of unit amplitude on a hull under way [N/m, N].
+
+    The waves that the hull scatters oscillate at the frequency of encounter, while the wave keeps
+    its length. Their surface condition is that at zero speed, and their impulse J adds the moments
+    -U J_z in pitch and U J_y in yaw (N. Salvesen, E. O. Tuck and O. Faltinsen, Ship motions and sea
+    loads, Transactions of SNAME 78, 1970). The impulse is finite where the frequency of encounter
+    is zero. Near zero it is interpolated between the solutions at both signs of `least_encounter`,
+    so that it is continuous.
+
+    Args:
+        solver: Capytaine's solver.
+        body: The wetted hull.
+        wave: The wave.
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    import capytaine
+    import numpy as np
+    from capytaine.bem.airy_waves import froude_krylov_force
+
+    undisturbed = capytaine.DiffractionProblem(
+        body=body,
+        wave_direction=wave.heading,
+        omega=wave.frequency,
+        **water_of_waves(wave.frequency, water),
+    )
+    condition = undisturbed.boundary_condition
+    least = least_encounter(wave.frequency, water)
+    if abs(wave.encounter) >= least:
+        impulse = scattered_impulse(solver, body, condition, wave.encounter, water)
+    else:
+        met, overtaken = (
+            scattered_impulse(solver, body, condition, sign * least, water) for sign in (1.0, -1.0)
+        )
+        share = 0.5 + 0.5 * wave.encounter / least
+        impulse = share * met + (1.0 - share) * overtaken
+    pressure = froude_krylov_force(undisturbed)
+    force = np.array([pressure[axis] for axis in AXES]) - 1j * wave.encounter * impulse
+    force[AXES.index("Pitch")] -= wave.speed * impulse[AXES.index("Heave")]
+    force[AXES.index("Yaw")] += wave.speed * impulse[AXES.index("Sway")]
+    return force
+
+
+def excitation_at_speed(
+    solver: Any, body: Any, waves: list[MetWave], water: dict[str, Any]
+) -> list[list[list[float]]]:
+    """Return the excitation (H, 6) of waves on a hull under way, as pairs of numbers.
+
+    Waves of equal frequency of encounter follow each other, because the solver keeps the matrix of
+    the last one. The first ones are those of the frequency of the wave, at which it has computed
+    the radiation.
+
+    Args:
+        solver: Capytaine's solver.
+        body: The wetted hull.
+        waves: Waves of one frequency.
+        water: Depth, density and gravity as Capytaine takes them.
+    """
+    found: list[Any] = [None] * len(waves)
+
+    def order(place: int) -> tuple[bool, float]:
+        wave = waves[place]
+        return wave.encounter != wave.frequency, abs(wave.encounter)
+
+    for place in sorted(range(len(waves)), key=order):
+        found[place] = complex_pairs(met_excitation(solver, body, waves[place], water))
+    return found
+
+
 def water_of_waves(frequency: float, water: dict[str, Any]) -> dict[str, Any]:
     """Return the water with the depth that waves of a frequency feel.
 
@@ -301,6 +481,11 @@ def main(path: str) -> None:
                 row["added_mass"], row["damping"], row["radiation_kochin"] = found
                 waves = excitation(solver, body, frequency, request["headings"], own)
                 row["excitation"], row["diffraction_kochin"] = waves
+                if request["speed"] > 0.0:
+                    met = waves_at_speed(
+                        body, frequency, request["headings"], request["speed"], water
+                    )
+                    row["excitation_at_speed"] = excitation_at_speed(solver, body, met, water)
             append_line(results, row)
         print(f"done {number} of {len(frequencies)}", flush=True)
 

@@ -34,6 +34,7 @@ MESHES = (".stl", ".obj", ".ply")
 # the excitation is small; the panels must be short against the shortest
 LONGEST, SHORTEST = 20.0, 0.5
 PANELS_PER_WAVE = 8.0  # of the shortest wave; with half as many the errors reach 10 %
+FEWEST_PANELS = 4.0  # of a scattered wave: the half of them, below which a note is printed
 FREQUENCIES, HEADINGS = 30, 13  # default numbers; headings every 15 degrees
 MOST_PANELS = 6000  # the matrices of this many need some 2 GB
 Report = Callable[[str, float], None]
@@ -148,12 +149,28 @@ def default_panel(length: float) -> float:
     return SHORTEST * length / PANELS_PER_WAVE
 
 
+def highest_resolved(panel: float, speed: float) -> float:
+    """Return the frequency of waves from ahead whose scattered waves are four panels long [rad/s].
+
+    At a speed the hull meets waves from ahead at a higher frequency, at which they are scattered as
+    shorter waves. The dispersion is that of deep water, which such short waves have.
+
+    Args:
+        panel: Longest edge of a panel [m].
+        speed: Forward speed [m/s], above 0.
+    """
+    met = float(np.sqrt(2.0 * np.pi * GRAVITY / (FEWEST_PANELS * panel)))
+    tau = speed * met / GRAVITY
+    return 2.0 * met / (1.0 + float(np.sqrt(1.0 + 4.0 * tau)))
+
+
 def run_capytaine(
     hull: HullMesh,
     frequencies: list[float],
     headings: list[float],
     report: Report,
     halvings: int = 0,
+    speed: float = 0.0,
 ) -> list[dict[str, Any]]:
     """Compute the coefficients of a hull; frequencies of an earlier call come from the cache.
 
@@ -163,10 +180,11 @@ def run_capytaine(
         headings: Directions to which the waves run in SNAME axes [rad].
         report: Called with a text and the fraction done.
         halvings: How often the edges of all panels are halved.
+        speed: Forward speed [m/s] at which the excitation is computed too.
 
     Returns:
         One dictionary for the geometry, for each frequency and for infinite frequency, in the axes
-        of Capytaine.
+        of Capytaine. At a speed those of the frequencies have `excitation_at_speed`.
 
     Raises:
         BadInput: Capytaine is not installed or fails.
@@ -183,6 +201,7 @@ def run_capytaine(
         "gravity": GRAVITY,
         "headings": [-angle for angle in headings],
         "halvings": halvings,
+        "speed": speed,
         "most_panels": MOST_PANELS,
     }
     key = request | {"mesh": hashlib.sha256(hull.mesh.read_bytes()).hexdigest()}
@@ -224,7 +243,7 @@ def _run_worker(request: Path, report: Report) -> None:
 def coefficients_of_rows(
     rows: list[dict[str, Any]], hull: HullMesh, headings: list[float]
 ) -> Coefficients:
-    """Return coefficients in SNAME axes from results of Capytaine, without mean drift.
+    """Return coefficients at rest in SNAME axes from results of Capytaine, without mean drift.
 
     Args:
         rows: Results of `run_capytaine`.
@@ -270,16 +289,41 @@ def _complex(pairs: Any) -> Array:
     return np.asarray(values[..., 0] + 1j * values[..., 1])
 
 
-def floating_coefficients(
-    rows: list[dict[str, Any]], hull: HullMesh, headings: list[float], ballast: Ballast
+def with_excitation_at_speed(
+    found: Coefficients, rows: list[dict[str, Any]], speed: float
 ) -> Coefficients:
-    """Return coefficients with the mean drift of the freely floating hull.
+    """Return a copy of coefficients with the excitation at a forward speed.
+
+    Args:
+        found: Coefficients of `rows` at rest.
+        rows: Results of `run_capytaine` at the speed.
+        speed: Forward speed [m/s]; the copy equals the coefficients if it is 0.
+    """
+    if speed == 0.0:
+        return found
+    by_frequency = {row["frequency"]: row for row in rows}
+    pairs = []
+    for frequency in found.frequency:
+        pairs.append(by_frequency[float(frequency)]["excitation_at_speed"])
+    excitation = excitation_to_sname(_complex(pairs), conjugate=True)
+    return replace(found, excitation=excitation, speed=speed)
+
+
+def floating_coefficients(
+    rows: list[dict[str, Any]],
+    hull: HullMesh,
+    headings: list[float],
+    ballast: Ballast,
+    speed: float = 0.0,
+) -> Coefficients:
+    """Return coefficients with the mean drift of the freely floating hull at rest.
 
     Args:
         rows: Results of `run_capytaine`.
         hull: The hull.
         headings: Directions to which the waves run in SNAME axes (H,) [rad].
         ballast: Distribution of the mass.
+        speed: Forward speed [m/s] of the excitation and of the results.
 
     Raises:
         BadInput: The hull would capsize.
@@ -287,7 +331,8 @@ def floating_coefficients(
     found = coefficients_of_rows(rows, hull, headings)
     response, extra = floating_response(found, ballast)
     drift = mean_drift(rows, found, response, extra)
-    return replace(found, drift=drift, drift_of=ballast.words(found))
+    found = replace(found, drift=drift, drift_of=ballast.words(found))
+    return with_excitation_at_speed(found, rows, speed)
 
 
 def compute_coefficients(
@@ -296,6 +341,7 @@ def compute_coefficients(
     headings: list[float],
     ballast: Ballast,
     report: Report,
+    speed: float = 0.0,
 ) -> Coefficients:
     """Compute the coefficients of a hull by Capytaine and fit the memory of its radiation force.
 
@@ -305,17 +351,22 @@ def compute_coefficients(
         headings: Directions to which the waves run [rad], 0 to pi.
         ballast: Distribution of the mass, by which the hull moves while it drifts.
         report: Called with a text and the fraction done.
+        speed: Forward speed [m/s] of the excitation; all other coefficients are those at rest.
 
     Raises:
         BadInput: Capytaine is not installed or fails, or the hull would capsize.
     """
-    rows = run_capytaine(hull, frequencies, headings, report)
+    rows = run_capytaine(hull, frequencies, headings, report, speed=speed)
     report("memory of the radiation force", 1.0)
-    return with_memory(floating_coefficients(rows, hull, headings, ballast))
+    return with_memory(floating_coefficients(rows, hull, headings, ballast, speed))
 
 
 def study_mesh(
-    hull: HullMesh, frequencies: list[float], ballast: Ballast, report: Report
+    hull: HullMesh,
+    frequencies: list[float],
+    ballast: Ballast,
+    report: Report,
+    speed: float = 0.0,
 ) -> MeshStudy:
     """Compare a mesh with the same mesh with edges of half the length.
 
@@ -324,12 +375,13 @@ def study_mesh(
         frequencies: Some of the frequencies of the computation [rad/s].
         ballast: Distribution of the mass.
         report: Called with a text and the fraction done.
+        speed: Forward speed [m/s] of the excitation.
     """
     headings = [0.75 * np.pi]  # waves that excite all axes
     found, panels = [], []
     for halvings in (0, 1):
-        rows = run_capytaine(hull, frequencies, headings, report, halvings)
-        found.append(floating_coefficients(rows, hull, headings, ballast))
+        rows = run_capytaine(hull, frequencies, headings, report, halvings, speed)
+        found.append(floating_coefficients(rows, hull, headings, ballast, speed))
         panels.append(next(row["panels"] for row in rows if row["frequency"] == "geometry"))
     coarse, fine = found
     change = {}

@@ -486,6 +486,22 @@ def test_the_command_writes_loads_that_the_effect_reads(tmp_path: Path) -> None:
     assert code == 0 and "renamed to drift_pairs.csv.old" in printed
 
 
+def test_loads_of_a_table_keep_its_speed_and_those_of_motions_belong_to_the_vessel(
+    tmp_path: Path,
+) -> None:
+    moving = str(write_csv(tmp_path / "ship.csv", follower, "# speed = 1.5\n"))
+    lines = (tmp_path / "ship.csv").read_text()
+    (tmp_path / "load.csv").write_text(
+        lines.replace("_m_per_m", "_N_per_m").replace("_deg_per_m", "_Nm_per_m")
+    )
+    code, printed = invoked(moving, "--vessel", "otter", "--out", str(tmp_path / "motions"))
+    assert code == 0, printed
+    assert read_wave_loads(tmp_path / "motions").speed == 0.0
+    code, printed = invoked(str(tmp_path / "load.csv"), "--out", str(tmp_path / "loads"))
+    assert code == 0, printed
+    assert read_wave_loads(tmp_path / "loads").speed == 1.5
+
+
 def test_the_command_notes_what_it_does_not_use(tmp_path: Path) -> None:
     path = str(write_csv(tmp_path / "ship.csv", follower, "# phase = lag\n"))
     code, printed = invoked(path, "--vessel", "osv")
@@ -503,8 +519,10 @@ def test_the_command_notes_what_it_does_not_use(tmp_path: Path) -> None:
         (["{load}", "--vessel", "otter"], "--vessel and --load apply to tables of motions"),
         (
             ["{mesh}", "--vessel", "otter", "--draught", "1"],
-            "--vessel, --load and --speed apply to tables",
+            "--vessel and --load apply to tables",
         ),
+        (["{mesh}", "--draught", "1", "--speed", "1"], "--speed applies to meshes (.stl, .obj"),
+        (["{mesh}", "--draught", "1", "--speed", "-1"], "--speed"),
         (["{mesh}"], "--draught is required for a mesh"),
         (["{other}", "--draught", "1"], "tables of response amplitude operators (.2, .3, .4"),
     ],

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.physics.base import Array
 from boatsim.physics.coefficients.table import Coefficients
@@ -23,7 +24,7 @@ from validation.waves.offsets import (
     parse_mgf,
     submerged_half,
 )
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 from validation.waves.veres_coefficients import read_veres_coefficients
 
 LENGTH, BEAM, DRAUGHT, DECK = 60.0, 8.0, 3.0, 5.0  # [m]

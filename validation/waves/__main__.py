@@ -158,9 +158,7 @@ def print_wigley_speed(folder: Path) -> None:
     print(
         "axes; forward speed: with the terms of radiation_memory; diffraction: with the moment of"
     )
-    print(
-        "the diffraction at forward speed too, which panel_wave_loads leaves out; encounter: with"
-    )
+    print("the diffraction at forward speed too, which loads at rest leave out; encounter: with")
     print("the diffraction at the frequency of encounter too")
     print(
         "  Fn  wave / L  heave   none          body axes     forward speed diffraction   encounter"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.physics.base import Array
 from boatsim.physics.coefficients.table import Coefficients
@@ -20,7 +21,7 @@ from boatsim.physics.hull.submerged import submerged_part, wetted_triangles
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS
 from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 
 # Mesh of the ship in github.com/NavalToolbox/navaltoolbox-lib, commit 6133809 of January 2026:
 # x ahead of the aft perpendicular, z above the keel

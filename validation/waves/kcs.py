@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.errors import BadInput
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.coefficients.table import Coefficients
@@ -18,7 +19,7 @@ from validation.waves.hull_at_speed import Complex, HullAtSpeed, Loading, Wave
 from validation.waves.hulls import write_obj
 from validation.waves.loft import Hydrostatics, Panels, Station, hydrostatics, loft, section_area
 from validation.waves.ship_speed import METHODS
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 
 # Table of offsets, in github.com/lohith-g-45/Hydrohackathon at commit 0a99ce5b, folder
 # data/external_benchmarks/kcs; it was published by the KRISO and by the workshop of 2015

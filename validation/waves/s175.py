@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.hydrodynamics.rao_table import RaoTable
 from boatsim.hydrodynamics.response import linear_stiffness, rigid_body
@@ -23,7 +24,7 @@ from boatsim.physics.particulars import GRAVITY
 from validation.waves.hulls import write_obj
 from validation.waves.offsets import extract, lofted, mgf_in_archive, parse_mgf
 from validation.waves.ship_speed import HEAVE, PITCH, ROLL, SWAY, YAW, speed_terms
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 from validation.waves.veres_coefficients import VeresCoefficients, read_veres_coefficients
 
 # A ship of ShipX in github.com/cybergalactic/MSS, commit 736a3d12 of July 2026

@@ -4,7 +4,7 @@ The radiation is computed from coefficients at zero speed in three ways: with no
 the frequency of encounter, with the equations in body axes, and with the terms of `forward_speed`
 of `radiation_memory` in addition, which make them those of strip theory. The excitation is that at
 zero speed, with the frequency of encounter; strip theory adds the moment -U / (i w_e) of the
-diffraction force in heave, which `panel_wave_loads` leaves out, and takes the diffraction at the
+diffraction force in heave, which loads at rest leave out, and takes the diffraction at the
 frequency of encounter (`speed_diffraction`).
 """
 
@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.hydrodynamics.capytaine_worker import MetWave
 from boatsim.hydrodynamics.computation import HullMesh, coefficients_of_rows, run_capytaine
 from boatsim.physics.base import Array
 from boatsim.physics.particulars import GRAVITY
 from validation.waves.ship_speed import METHODS
 from validation.waves.slow_table import HEAVE, PITCH, SlowTable, Wave
-from validation.waves.speed_diffraction import MetWave, MovingHull
+from validation.waves.speed_diffraction import MovingHull
 from validation.waves.wigley import (
     DENSITY,
     DRAUGHT,

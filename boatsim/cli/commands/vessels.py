@@ -353,7 +353,10 @@ def hydrodynamics(
     speed: Annotated[
         float,
         typer.Option(
-            min=0.0, max=100.0, metavar="U", help="Forward speed of a table of operators [m/s]."
+            min=0.0,
+            max=100.0,
+            metavar="U",
+            help="Forward speed of the excitation of a mesh, or of a table of operators [m/s].",
         ),
     ] = 0.0,
     content: Content = None,

@@ -59,6 +59,7 @@ MEMORY_COLUMNS = (
 )
 DRIFT_COLUMNS = ("omega_radps", "heading_rad", "surge_Npm2", "sway_Npm2", "yaw_Npm")
 SET_NAMES = tuple("_".join(AXES[i] for i in axes) for axes in SETS)
+SPEED_COMMENT = "[m/s] forward speed of excitation.csv; without it 0"
 DIGITS = 9  # significant digits of the numbers
 MODEL_DIGITS = 13  # of the memory, whose sum of N / b is zero
 MOST_ROWS = 200_000  # of a table; a hull needs some hundred
@@ -90,9 +91,12 @@ def write_coefficients(folder: Path, found: Coefficients) -> list[str]:
         "density": "[kg/m^3] of the water",
         "depth": "[m] of the water; 0: deep water",
         "draught": "[m]",
+        "speed": SPEED_COMMENT,
         "volume": "[m^3] displaced",
         "buoyancy": "[m] centre of buoyancy",
     }
+    if found.speed > 0.0:
+        header["speed"] = found.speed
     lines = []
     for key, value in header.items():
         line = f"{key} = {toml_value(value)}"
@@ -151,6 +155,8 @@ def write_wave_loads(folder: Path, found: WaveLoads) -> list[str]:
         f"phase = {toml_value(PHASE_TEXT)}",
         f"depth = {toml_value(found.depth)}  # [m] of the water; 0: deep water",
     ]
+    if found.speed > 0.0:
+        lines.append(f"speed = {toml_value(found.speed)}  # {SPEED_COMMENT}")
     with replace_file(folder / HEADER) as path:
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     _write_table(folder / EXCITATION, EXCITATION_COLUMNS, _excitation_rows(found))
@@ -271,6 +277,7 @@ def _read_wave_loads(folder: Path, _: tuple[int, ...]) -> WaveLoads:
         excitation=excitation,
         drift=drift,
         drift_pairs=_read_pairs(folder),
+        speed=_speed(header, folder / HEADER),
     )
 
 
@@ -314,7 +321,18 @@ def _read_coefficients(folder: Path, _: tuple[int, ...]) -> Coefficients:
         drift=drift,
         drift_of=str(header.get("drift_of", "")),
         drift_pairs=_read_pairs(folder),
+        speed=_speed(header, label),
     )
+
+
+def _speed(header: Mapping[str, object], label: Path) -> float:
+    """Return the forward speed of the excitation [m/s], 0 in files that do not give it."""
+    if "speed" not in header:
+        return 0.0
+    speed = _number(header, "speed", label)
+    if speed < 0.0:
+        raise BadInput(f"{label}: speed = {speed:g} m/s; allowed is 0 or more")
+    return speed
 
 
 def _number(header: Mapping[str, object], key: str, label: Path) -> float:

@@ -2,7 +2,8 @@
 
 All numbers are in SI units, in SNAME axes (x forward, y starboard, z down) about a reference point
 on the waterline. An incident wave has the elevation a cos(w t - k (x cos beta + y sin beta)),
-positive upward, and its excitation is Re(X exp(i w t)) a.
+positive upward, and its excitation is Re(X exp(i w t)) a. On a hull under way, the phase w t takes
+the frequency of encounter, which is negative in waves that the hull overtakes.
 """
 
 from dataclasses import dataclass
@@ -44,6 +45,8 @@ class WaveLoads:
         drift: Mean drift force in surge and sway and moment in yaw (N, H, 3) per square of the
             amplitude [N/m^2, N/m]; None if it is not known.
         drift_pairs: Slow drift of pairs of waves; None if it is not known.
+        speed: Forward speed [m/s] at which the excitation was computed; 0 at rest, and for loads of
+            the motions of a vessel.
     """
 
     source: str
@@ -53,11 +56,12 @@ class WaveLoads:
     excitation: Array
     drift: Array | None = None
     drift_pairs: DriftPairs | None = None
+    speed: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Coefficients:
-    """Hydrodynamic coefficients of a hull at rest in waves, about its reference point.
+    """Hydrodynamic coefficients of a hull in waves, about its reference point.
 
     Attributes:
         source: Program and mesh, in words.
@@ -80,6 +84,7 @@ class Coefficients:
             amplitude [N/m^2, N/m]; None if it is not known.
         drift_of: Hull that drifts, in words: its mass and gyradii.
         drift_pairs: Slow drift of pairs of waves; None if it is not known.
+        speed: Forward speed [m/s] of the excitation; all other coefficients are those at rest.
     """
 
     source: str
@@ -99,3 +104,4 @@ class Coefficients:
     drift: Array | None = None
     drift_of: str = ""
     drift_pairs: DriftPairs | None = None
+    speed: float = 0.0

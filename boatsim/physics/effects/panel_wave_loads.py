@@ -155,9 +155,11 @@ class PanelWaveLoads(SeaParameters, Force):
     theta_i = w_i t - k_i (x cos gamma_i + y sin gamma_i) + epsilon_i
 
     X is the excitation of a wave of unit amplitude: pressure of the undisturbed wave and
-    diffraction, without forward speed. beta = gamma - psi is the direction of the wave relative to
-    the hull. D is the mean drift of a wave of unit amplitude in surge, sway and yaw, and `drift` is
-    the factor f on the mean and slowly varying drift: 1 for the whole drift, 0 for none. The double
+    diffraction, at the forward speed of the coefficients, at rest by default. It does not change
+    with the speed of the hull, which meets the waves at the frequency of encounter because it moves
+    through them. beta = gamma - psi is the direction of the wave relative to the hull. D is the
+    mean drift of a wave of unit amplitude in surge, sway and yaw, and `drift` is the factor f on
+    the mean and slowly varying drift: 1 for the whole drift, 0 for none. The double
     sum is Newman's approximation. If the folder has a drift_pairs.csv, the drift is that of the
     full quadratic transfer functions D(w_i, w_k) of its pairs of waves instead, the real part of
     f sum_i sum_k a_i a_k D_j(w_i, w_k, beta) exp(i (theta_i - theta_k)), in all axes that it has.
@@ -263,3 +265,9 @@ class PanelWaveLoads(SeaParameters, Force):
         if self.significant_height == 0.0:
             return ()
         return AXES
+
+    def excitation_speed(self) -> float:
+        """Return the forward speed of the coefficients [m/s]; 0 if the sea is calm."""
+        if self.significant_height == 0.0 or not self.coefficients:
+            return 0.0
+        return read_wave_loads(self.coefficients).speed

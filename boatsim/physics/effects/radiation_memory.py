@@ -259,6 +259,10 @@ class RadiationMemory(Inertia, MotionMemory):
         counts = (float(len(upright)), float(len(sideways)))
         return (*counts, *upright.ravel().tolist(), *sideways.ravel().tolist())
 
+    def radiates_as_at_rest(self) -> bool:
+        """Return whether the memory has no terms of forward speed."""
+        return self.forward_speed == 0.0
+
     @property
     def memory_states(self) -> int:
         """Number of floats stored from step to step: oscillators, factors and last velocities."""

@@ -315,6 +315,18 @@ class Effect(CheckedParameters):
         """
         return ()
 
+    def excitation_speed(self) -> float:
+        """Return the forward speed at which the wave loads of the effect were computed [m/s].
+
+        It is 0 at rest, for calm water, and for effects other than waves. The effect has all
+        parameters.
+        """
+        return 0.0
+
+    def radiates_as_at_rest(self) -> bool:
+        """Return whether the effect is a radiation force without its terms of forward speed."""
+        return False
+
     def wave_field(self) -> WaveField | None:
         """Return the waves of the effect, whose elevation is known at any place and time.
 

@@ -38,6 +38,7 @@ from boatsim.physics.vessel.schema import (
     VesselFile,
 )
 from boatsim.physics.vessel.wave_axes import warn_of_unforced_axes
+from boatsim.physics.vessel.wave_speed import warn_of_excitation_speed
 
 FILE_NAME = "vessel.toml"
 # Fields with the same name and type in `Vessel` and `VesselFile`
@@ -430,7 +431,8 @@ class Vessel(ChannelBindings):
     def check(self, label: str) -> None:
         """Check the channel bindings of all effects, and that the rigid body suits the free axes.
 
-        Waves that exert no force in some degree of freedom cause a warning.
+        Waves that exert no force in some degree of freedom cause a warning, and so do loads of
+        waves at a forward speed next to a radiation force without its terms of speed.
 
         Args:
             label: Name of the file in messages.
@@ -451,6 +453,7 @@ class Vessel(ChannelBindings):
                 "pitch is held"
             )
         warn_of_unforced_axes(self.name, self.dof, self.effects)
+        warn_of_excitation_speed(self.name, self.effects)
 
     # Use
     # ----------------------------------------------------------------------------------------------

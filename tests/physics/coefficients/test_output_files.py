@@ -13,8 +13,9 @@ from boatsim.physics.coefficients.files import (
     read_coefficients,
     read_wave_loads,
     write_coefficients,
+    write_wave_loads,
 )
-from boatsim.physics.coefficients.table import Coefficients
+from boatsim.physics.coefficients.table import Coefficients, WaveLoads
 
 OTTER = Path(__file__).parents[3] / "models" / "otter" / "hydrodynamics"
 SIGNS = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # of z-up axes
@@ -74,6 +75,26 @@ def test_written_coefficients_are_read_again(tmp_path: Path) -> None:
     assert again.drift_of == found.drift_of
     assert again.memory is not None and found.memory is not None
     assert again.memory.sections[0] == pytest.approx(found.memory.sections[0], rel=1e-12)
+
+
+def test_speed_of_the_excitation_is_written_and_read_again(tmp_path: Path) -> None:
+    write_coefficients(tmp_path / "rest", own())
+    write_coefficients(tmp_path / "moving", replace(own(), speed=2.5))
+    header = tmp_path / "moving" / "coefficients.toml"
+    assert "speed" not in (tmp_path / "rest" / "coefficients.toml").read_text()
+    assert "speed = 2.5  # [m/s]" in header.read_text()
+    assert read_coefficients(tmp_path / "rest").speed == 0.0
+    assert read_wave_loads(tmp_path / "rest").speed == 0.0
+    assert read_coefficients(tmp_path / "moving").speed == 2.5
+    assert read_wave_loads(tmp_path / "moving").speed == 2.5
+    loads = WaveLoads("x", 0.0, own().frequency, own().heading, own().excitation, speed=1.5)
+    write_wave_loads(tmp_path / "loads", loads)
+    assert read_wave_loads(tmp_path / "loads").speed == 1.5
+    text = header.read_text()
+    for value, message in (("-1.0", "allowed is 0 or more"), ("'fast'", "a number is required")):
+        header.write_text(text.replace("speed = 2.5", f"speed = {value}"))
+        with pytest.raises(BadInput, match=message):
+            read_wave_loads(tmp_path / "moving")
 
 
 def test_output_of_wamit_is_converted(tmp_path: Path) -> None:

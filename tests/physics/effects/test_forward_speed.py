@@ -1,5 +1,6 @@
 """Terms of forward speed of the radiation memory: strip theory, energy, symmetries, back ends."""
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from boatsim.physics.coefficients.table import Coefficients
 from boatsim.physics.debugging import python_function
 from boatsim.physics.effects.radiation_memory import RadiationMemory
 from boatsim.physics.vessel import Vessel, load_vessel
+from boatsim.physics.vessel.wave_speed import ExcitationSpeedWarning
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.linearisation import linear_model
@@ -446,3 +448,36 @@ def test_a_replay_of_a_recording_repeats_its_motion(tmp_path: Path) -> None:
     moved = simulated.signals["x_m"]
     assert moved[100] == pytest.approx(signals["x_m"][100], abs=0.02)
     assert signals["x_m"][100] > 3.0
+
+
+# ---- loads of waves at a forward speed
+
+
+LOADS = """
+[[effect]]
+use = "panel_wave_loads"
+coefficients = "{coefficients}"
+significant_height = {height}
+modal_period = 3.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("speed", "factor", "height", "warned"),
+    [(1.5, 0.0, 0.1, True), (1.5, 1.0, 0.1, False), (0.0, 0.0, 0.1, False), (1.5, 0.0, 0.0, False)],
+)
+def test_loads_at_speed_without_the_terms_of_the_radiation_give_a_warning(
+    tmp_path: Path, speed: float, factor: float, height: float, warned: bool
+) -> None:
+    write_coefficients(tmp_path / "loads", replace(read_coefficients(OTTER), speed=speed))
+    more = LOADS.format(coefficients=tmp_path / "loads", height=height)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        boat(tmp_path / "boat", factor, more=more)
+    own = [str(one.message) for one in found if one.category is ExcitationSpeedWarning]
+    if warned:
+        [line] = own
+        assert "the loads of panel_wave_loads are those at 1.5 m/s, but radiation_memory" in line
+        assert "\n" not in line and "forward_speed = 1.0" in line
+    else:
+        assert own == []
