@@ -47,9 +47,10 @@ def candidate_ranking_section(f: Findings) -> Iterator[Block]:
     bars = tuple((np.maximum(gains, 0.0) / max(*gains, 1e-9)).tolist())
     caption = (
         "Each candidate effect tested alone, the best ones first. The odds are those that the "
-        "better fit is chance; the bars compare the evidence, which is listed below. Small odds alone do not make a candidate a cause, because several "
-        "can imitate the same error. For an identified effect they differ from the value above, "
-        "which is computed in the presence of all other identified effects."
+        "better fit is chance; the bars compare the evidence, which is listed below. Small odds "
+        "alone do not make a candidate a cause, because several can imitate the same error. For an "
+        "identified effect they differ from the value above, which is computed in the presence of "
+        "all other identified effects."
     )
     header = ["candidate", "odds of chance", "verdict", "meaning"]
     yield without_empty_columns(
