@@ -27,6 +27,12 @@ def law(m: Any, q: Any) -> Wrench:
     return wrench(X=X, Y=Y, N=q.x * Y - q.y * X)
 
 
+# Range of the attachment in a diagnosis [m], for the reference hull of 1.2 m: from the stern to the
+# bow, and a tenth of a length beyond both for platforms and bowsprits. Farther out, the drag of
+# something that is not attached to the hull describes whatever brakes its turning.
+ON_HULL = (-0.72, 0.72)
+
+
 @dataclass(frozen=True)
 class TowedDrag(Force):
     """Quadratic drag of an object that the boat tows on a light line.
@@ -79,7 +85,7 @@ class TowedDrag(Force):
         words="attachment ahead of the origin",
         fit=True,
         spread=0.6,
-        within=(-1.2, 1.2),
+        within=ON_HULL,
     )
     y: float = param(
         0.0, low=-100.0, high=100.0, unit="m", words="attachment to starboard of the origin"
