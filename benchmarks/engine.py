@@ -24,6 +24,8 @@ from rich.console import Console
 from rich.table import Table
 
 from boatsim.physics import vessel
+from boatsim.physics.base import AXES
+from boatsim.physics.content import content_root
 from boatsim.simulate import cases, scenario
 from boatsim.simulate.batch import Batch
 from boatsim.simulate.engine import Engine, State
@@ -46,6 +48,7 @@ EXTRA = (
     {"use": "current", "north": 0.02, "east": -0.01},
     {"use": "shallow_water", "factor": 1.3},
 )
+MEMORY = content_root() / "models" / "otter" / "hydrodynamics"
 SCENARIO = "joystick_boat/sway_1"
 FAST = 100.0  # real-time factor that each scenario should reach
 OPEN = {
@@ -96,6 +99,16 @@ class Figure:
         )
 
 
+def vessel_with_memory() -> vessel.Vessel:
+    """Return the Otter with the memory of its radiation force in place of the added mass.
+
+    The memory has five oscillators for surge, heave and pitch and five for sway, roll and yaw.
+    """
+    memory = {"use": "radiation_memory", "coefficients": str(MEMORY)}
+    none = dict.fromkeys(AXES, 0.0)
+    return vessel.load_vessel("otter", settings={"added_mass": none}, extra=[memory])
+
+
 def measure_stepping() -> list[Figure]:
     """Return the steps per second of MuJoCo with and without forces, and of the compiled engine."""
     boat = vessel.load_vessel("joystick_boat", extra=EXTRA)
@@ -106,6 +119,7 @@ def measure_stepping() -> list[Figure]:
     engines["floor"] = Engine(boat, tank, STEP, show=False)
     engines["floor"].callback = None
     compiled_engine, six = Batch(boat, step=STEP), Batch(vessel.load_vessel("otter"), step=STEP)
+    remembering = Batch(vessel_with_memory(), step=STEP)
     start = [START.x, START.y, START.psi, START.u, START.v, START.r]
 
     def coast(name: str, steps: int) -> None:
@@ -122,6 +136,11 @@ def measure_stepping() -> list[Figure]:
             lambda: compiled_engine.hold_commands(start, COMMANDS, 1_000_000),
         ),
         "six": Variant("six", 300_000, lambda: six.hold_commands([0.0] * 12, SHAFTS, 300_000)),
+        "memory": Variant(
+            "memory",
+            300_000,
+            lambda: remembering.hold_commands([0.0] * 12, SHAFTS, 300_000),
+        ),
     }
     for variant in variants.values():
         variant.advance()  # the first call compiles
@@ -137,6 +156,7 @@ def measure_stepping() -> list[Figure]:
         Figure("engine, Python callback", rate["python"], "steps/s", 10_000),
         Figure("twin", rate["twin"], "steps/s", 3_000_000),
         Figure("twin, the Otter's six freedoms", rate["six"], "steps/s", 1_000_000),
+        Figure("twin, the same with memory of radiation", rate["memory"], "steps/s", 500_000),
     ]
 
 
