@@ -49,6 +49,11 @@ def capitalize(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+def first_sentence(text: str) -> str:
+    """Return the first sentence of a text, with its full stop."""
+    return f"{text.partition('. ')[0].removesuffix('.')}."
+
+
 def _decimals(size: float, digits: int) -> int:
     """Return the decimal places that show this many significant digits."""
     if size <= 0.0 or not math.isfinite(size):

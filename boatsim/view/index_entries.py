@@ -10,7 +10,7 @@ from typing import Any
 
 from boatsim.atomic_folder import PART
 from boatsim.view.content_names import plain_name
-from boatsim.view.formatting import capitalize, join_words, name_in_words
+from boatsim.view.formatting import capitalize, first_sentence, join_words, name_in_words
 from boatsim.view.run_sentence import run_sentence, run_verdict
 
 METRICS, DIAGNOSIS, JOURNAL, LOG = "norms.json", "diagnosis.json", "journal.jsonl", "recording.csv"
@@ -161,8 +161,7 @@ def _diagnosis_result(answer: Mapping[str, Any]) -> str:
             parts.append(f"{len(names)} {counted}: {join_words(map(name_in_words, names))}")
     if parts:
         return capitalize(f"{'; '.join(parts)}.")
-    sentence, _, _ = str(answer["sentence"]).partition(". ")
-    return f"{sentence.rstrip('.')}."
+    return first_sentence(str(answer["sentence"]))
 
 
 def _campaign_entry(folder: Path, file: Path) -> IndexEntry:

@@ -16,7 +16,11 @@ class ValidateConfig:
         1.05, "1", "Ratio of rms errors of free runs from which they have grown.", low=1.0
     )
     certainty: float = setting(
-        2.0, "standard errors", "Errors must grow by more than this to refute an effect.", low=0.0
+        2.0,
+        "standard errors",
+        "Errors must grow by more than this to refute an effect, and held-out recordings lose as "
+        "much log likelihood by it to refute it although free runs are slightly better with it.",
+        low=0.0,
     )
     certainty_alike: float = setting(
         1.65,

@@ -23,7 +23,7 @@ from boatsim.diagnosis.report.what_if import (
     within_size,
 )
 from boatsim.files import replace_file
-from boatsim.view.formatting import capitalize, join_words, name_in_words
+from boatsim.view.formatting import capitalize, first_sentence, join_words, name_in_words
 from boatsim.view.html_page import render_template
 from boatsim.view.page_blocks import Section, escape_markup, markdown_lines
 from boatsim.webassembly.packing import LOADER, MOST_BYTES
@@ -149,11 +149,6 @@ def _headline(f: Findings) -> str:
     if not forces:
         return first_sentence(whole)
     return f"{capitalize(join_words(forces))} that no candidate effect explains."
-
-
-def first_sentence(text: str) -> str:
-    """Return the first sentence of a text."""
-    return f"{text.partition('. ')[0].removesuffix('.')}."
 
 
 def _lead(f: Findings) -> str:
