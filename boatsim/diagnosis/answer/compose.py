@@ -14,6 +14,7 @@ from boatsim.diagnosis.answer.effect_entries import (
 )
 from boatsim.diagnosis.answer.effect_groups import EffectGroups, classify_effects
 from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.formulas import states_any
 from boatsim.diagnosis.answer.incomplete import incomplete_sentence
 from boatsim.diagnosis.answer.log_entry import column_sources, finding_entry
 from boatsim.diagnosis.answer.schema import (
@@ -74,14 +75,13 @@ def compose_answer(
     ranking, evaluation, problem = stages.ranking, stages.evaluation, stages.decision.problem
     vessel = problem.program.vessel
     groups = _effect_groups(stages.decision, ranking)
-    formulas = described_entries(ranking.description, vessel)
     tested = () if ranking.divergences else question.candidates
     upper, lower = dict[str, dict[str, float]](), dict[str, dict[str, float]]()
     for name, fitted in ranking.last.items():
         own = name_without_prefixes(name)
         upper[own], lower[own] = parameter_limits(problem, fitted, name)
     answer: Answer = {
-        "verdict": _verdict(ranking, groups.effects, bool(formulas)),
+        "verdict": "",
         "sentence": "",
         "seconds": round(seconds, 3),
         "version": version(),
@@ -91,7 +91,7 @@ def compose_answer(
         "added": [added_entry(problem, ranking.best, name) for name in ranking.added],
         "by_free_runs": ranking.by_free_runs,
         "unknown": _unknown(ranking, stages.location),
-        "described": formulas,
+        "described": described_entries(ranking.description, vessel),
         "candidates": candidate_entries(ranking),
         "upper_limits": upper,
         "lower_limits": {name: found for name, found in lower.items() if found},
@@ -111,6 +111,7 @@ def compose_answer(
     }
     if ranking.recalibration is not None:
         answer["recalibration"] = _recalibration(ranking.recalibration)
+    answer["verdict"] = _verdict(ranking, groups.effects, states_any(answer))
     verdict = verdict_sentences(answer, effect_meanings(problem.candidates.values(), vessel))
     verdict = f"{verdict} {incomplete_sentence(ranking.skipped)}".rstrip()
     answer["sentence"] = _with_log_first(verdict, findings, problem, ranking)

@@ -3,9 +3,16 @@
 import itertools
 from collections.abc import Mapping, Sequence
 
+from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.findings import setting_of
+from boatsim.diagnosis.answer.formulas import doubt, is_event, is_stated, states_any
 from boatsim.diagnosis.answer.refined_numbers import main_refinement
-from boatsim.diagnosis.answer.schema import Answer, EffectEntry, ParameterEntry
+from boatsim.diagnosis.answer.schema import (
+    Answer,
+    DescribedEntry,
+    EffectEntry,
+    ParameterEntry,
+)
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.view.formatting import (
     capitalize,
@@ -116,11 +123,11 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
 
 
 def _confirmed_possible(answer: Answer) -> list[str]:
-    """Return the statement on effects beside a formula that only held-out recordings support.
+    """Return the statement on effects that only held-out recordings support.
 
-    Without a formula they are stated as what describes an unknown cause best.
+    None is repeated that is stated as what describes an unknown cause best.
     """
-    if not answer["described"]:
+    if _states_stand_ins(answer):
         return []
     found = []
     for entry in answer.get("also_possible", []):
@@ -180,11 +187,11 @@ def _none_tested(answer: Answer) -> str:
 def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     """Return statements on an unknown cause, on missing physics and on errors of measurement."""
     statements = []
-    if answer["unknown"].get("stand_ins") and not answer["described"]:
+    if _states_stand_ins(answer):
         statements.append(_stand_ins(answer))
     elif sentence := held_out_only_statement(answer):
         statements.append(sentence)
-    elif answer["unknown"]["flag"] and not answer["described"]:
+    elif answer["unknown"]["flag"] and not states_any(answer):
         statements.append(
             f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
         )
@@ -255,7 +262,7 @@ def held_out_only_statement(answer: Answer) -> str:
     Args:
         answer: Content of diagnosis.json.
     """
-    if answer["described"] or not answer["unknown"].get("held_out_only"):
+    if states_any(answer) or not answer["unknown"].get("held_out_only"):
         return ""
     return (
         "the cause is unknown only because of the held-out recordings: the model explains the "
@@ -288,6 +295,11 @@ def probability_with_look_alikes(answer: Answer, effect: EffectEntry) -> float:
     return 1.0
 
 
+def _states_stand_ins(answer: Answer) -> bool:
+    """Return whether effects are stated as what describes an unknown cause best."""
+    return bool(answer["unknown"].get("stand_ins")) and not states_any(answer)
+
+
 def _stand_ins(answer: Answer) -> str:
     """Return the statement that an effect which explains the recordings is no likely cause."""
     names, effects = answer["unknown"]["stand_ins"], []
@@ -318,23 +330,48 @@ def count_in_words(count: int, noun: str) -> str:
 
 
 def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
-    """Return statements on the formulas: those that generalize first, the others as a count."""
-    general, others = [], []
+    """Return statements on the formulas: those that generalize first, single events as a count.
+
+    Formulas that are not certain enough to be stated follow without their terms.
+    """
+    general, events, others = list[str](), list[str](), list[DescribedEntry]()
     for law in answer["described"]:
-        if law["carries_over"]:
-            general.append(f"the model lacks {law['statement']}")
+        if not is_stated(answer, law):
+            others.append(law)
+        elif is_event(law):
+            events.append(law["statement"])
         else:
-            others.append(law["statement"])
-    if not (general or effects_precede):
-        return [f"the model lacks {other}" for other in others[:MOST_NUMBERS]]
-    statements = general[:MOST_NUMBERS]
-    if len(others) == 1:
-        statements.append(f"one further force remains: {others[0]}")
-    elif others:
-        statements.append(f"{len(others)} further forces remain, the first is {others[0]}")
+            general.append(f"the model lacks {law['statement']}")
+    if general or effects_precede:
+        statements = general[:MOST_NUMBERS]
+        if len(events) == 1:
+            statements.append(f"one further force remains: {events[0]}")
+        elif events:
+            statements.append(f"{len(events)} further forces remain, the first is {events[0]}")
+    else:
+        statements = [f"the model lacks {event}" for event in events[:MOST_NUMBERS]]
     if statements and effects_precede:
         statements[0] = f"in addition, {statements[0]}"
-    return statements
+    return statements + _uncertain_formulas(answer, others)
+
+
+def _uncertain_formulas(answer: Answer, formulas: Sequence[DescribedEntry]) -> list[str]:
+    """Return statements on formulas that are not certain: what they describe, and the doubt."""
+    any_held_out = bool(answer.get("fit", {}).get("held_out"))
+    forces = dict[str, list[str]]()
+    reasons = dict[str, DescribedEntry]()
+    for formula in formulas:
+        reason = doubt(formula, any_held_out)
+        reasons[reason] = formula
+        forces.setdefault(reason, []).append(axis_force_words(formula["axis"]))
+    found = []
+    for reason, described in forces.items():
+        several = len(described) > 1
+        subject = "formulas describe" if several else "a formula describes"
+        clause = doubt(reasons[reason], any_held_out, several=several)
+        what = join_words(list(dict.fromkeys(described)))
+        found.append(f"{subject} {what} in the fitted recordings, but {clause}")
+    return found
 
 
 def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:

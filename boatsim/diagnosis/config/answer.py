@@ -62,3 +62,10 @@ class AnswerConfig:
         "by more than this share; a smaller difference does not matter to an owner.",
         low=0.0,
     )
+    formula_sds: float = setting(
+        2.0,
+        "sd",
+        "The verdict states a formula only if each coefficient is further than this from zero; a "
+        "smaller one may be chance.",
+        low=0.0,
+    )

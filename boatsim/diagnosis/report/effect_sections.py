@@ -5,8 +5,10 @@ from collections.abc import Iterator, Mapping
 
 from boatsim.diagnosis.answer.families import FAMILIES
 from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.formulas import doubt, is_event, is_stated, states_any
 from boatsim.diagnosis.answer.refined_numbers import refined_number_rows
 from boatsim.diagnosis.answer.schema import (
+    DescribedEntry,
     EffectEntry,
     ParameterEntry,
     StructureEntry,
@@ -216,7 +218,7 @@ def unexplained_force_section(f: Findings) -> Iterator[Block]:
     """
     unknown, factor = f.answer["unknown"], f.setting("locate.disturbance_factor")
     yield from _formulas(f)
-    if not f.answer["described"]:
+    if not states_any(f.answer):
         facts = format_evidence(unknown["gain_nats"])
         yield Heading("A force that no candidate effect explains", facts)
     if unknown["gain_nats"] > unknown["told_from_nats"]:
@@ -250,6 +252,22 @@ def _structure(s: StructureEntry) -> str:
     )
 
 
+def _confirmation(f: Findings, formula: DescribedEntry) -> str:
+    """Return whether a formula is part of the corrected vessel, and why."""
+    if is_event(formula):
+        return "It acts in one recording only. Therefore it is no part of the corrected vessel."
+    if not formula["carries_over"]:
+        reason = capitalize(doubt(formula, bool(f.answer["fit"].get("held_out"))))
+        return f"{reason}. Therefore it is no part of the corrected vessel."
+    part = (
+        "It reduces the errors of free runs over held-out recordings. Therefore it is part of the "
+        "corrected vessel."
+    )
+    if is_stated(f.answer, formula):
+        return part
+    return f"{part} But {doubt(formula, any_held_out=True)}."
+
+
 def _formulas(f: Findings) -> Iterator[Block]:
     """Yield each formula with its terms, and its curve over the quantity that it varies with."""
     for law in f.answer["described"]:
@@ -261,16 +279,7 @@ def _formulas(f: Findings) -> Iterator[Block]:
         yield Heading(capitalize(law["statement"]), f"formula · {format_evidence(gain)}")
         header = ["varies with", "value ± deviation", "odds of chance"]
         yield Table("Terms", header, rows)
-        if law["carries_over"]:
-            yield Text(
-                "It reduces the errors of free runs over held-out recordings. Therefore it is part "
-                "of the corrected vessel."
-            )
-        else:
-            yield Text(
-                "Held-out recordings do not confirm it. Therefore it is no part of the corrected "
-                "vessel."
-            )
+        yield Text(_confirmation(f, law))
     if not f.answer["described"]:
         return
     yield Text(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.findings import Findings
+from boatsim.diagnosis.answer.formulas import is_stated
 from boatsim.diagnosis.answer.verdict import (
     blames_log,
     finds_only_measurement_errors,
@@ -144,7 +145,7 @@ def _headline(f: Findings) -> str:
     forces: list[str] = []
     for law in f.answer["described"]:
         force = axis_force_words(law["axis"])
-        if force not in forces:
+        if force not in forces and is_stated(f.answer, law):
             forces.append(force)
     if not forces:
         return first_sentence(whole)

@@ -626,8 +626,21 @@ def test_every_verdict_has_its_sentences(verdict, effects, text):
     assert verdict_sentences(answer, MEANT) == text
 
 
-LAW = {"statement": "a side force of 2 N", "carries_over": True}
-EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
+def formula(statement, value, carries_over, **event):
+    """Return a formula of an answer with one term of standard deviation 1."""
+    term = {"of": "yaw rate", "value": value, "sd": 1.0, "unit": "N s", "gain_nats": 40.0} | event
+    return {
+        "axis": "sway",
+        "statement": statement,
+        "terms": [term],
+        "carries_over": carries_over,
+    }
+
+
+LAW = formula("a side force of 2 N", 20.0, True)
+EVENT = formula("a push at 3 s of run_1", 20.0, False, run="run_1")
+UNCONFIRMED = formula("a side force of 3 N", 20.0, False)
+UNDETERMINED = formula("a side force of 4 N", 1.9, True)
 
 
 @pytest.mark.parametrize(
@@ -656,16 +669,31 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
             "The model leaves out one effect: damping grows. In addition, the model lacks a side force of 2 N. "
             "2 further forces remain, the first is a push at 3 s of run_1.",
         ),
+        (
+            [],
+            [UNCONFIRMED],
+            f"{MISSING}. A formula describes a side force in the fitted recordings, but held-out "
+            "recordings do not confirm it.",
+        ),
+        (
+            [DAMPED],
+            [UNCONFIRMED, UNDETERMINED, UNCONFIRMED | {"axis": "yaw"}],
+            f"{MISSING}. In addition, the model leaves out one effect: damping grows. Formulas "
+            "describe a side force and a yaw moment in the fitted recordings, but held-out "
+            "recordings do not confirm them. A formula describes a side force in the fitted "
+            "recordings, but these recordings do not determine its coefficients.",
+        ),
     ],
 )
 def test_effects_come_before_formulas_and_events_are_counted(effects, described, text):
     answer = {
         "verdict": "described",
         "effects": effects,
-        "where": {"axes": {}},
+        "where": {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}},
         "candidates": [{"name": "wind"}],
         "unknown": {"flag": True},
         "described": described,
+        "fit": {"held_out": ["run_3"]},
     }
     assert verdict_sentences(answer, MEANT) == text
 

@@ -271,7 +271,7 @@ def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vesse
         and term["run"] == "run_1"
     )
     assert "of run_1" in law["statement"]
-    assert law["statement"].endswith("held-out recordings do not confirm it")
+    assert "confirm" not in law["statement"]
     assert not found.ranking.described_terms
     text = patched_vessel.patched_vessel_text(
         found.problem,
