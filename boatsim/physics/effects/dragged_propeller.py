@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param
-from boatsim.physics.effects.thruster import thrust_wrench_at_mount
+from boatsim.physics.effects.thruster import speed_of_advance, thrust_wrench_at_mount
 
 
 @njit(inline="always")
@@ -40,10 +40,8 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    along, across = m.ur - t.y * m.r, m.vr + t.x * m.r
-    return thrust_wrench_at_mount(
-        thrust_deficit(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t
-    )
+    speed = speed_of_advance(m, s, t)
+    return thrust_wrench_at_mount(thrust_deficit(t.gain * s.thrust, speed, q.drag), s, t)
 
 
 @dataclass(frozen=True)

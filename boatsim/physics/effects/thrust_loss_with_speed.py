@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param
-from boatsim.physics.effects.thruster import thrust_wrench_at_mount
+from boatsim.physics.effects.thruster import speed_of_advance, thrust_wrench_at_mount
 
 # Share of the full thrust below which the loss of a propeller falls to zero with the thrust itself,
 # and not with its square root, whose slope at zero is infinite. At ten times this share, a tenth of
@@ -39,7 +39,7 @@ def loss_reference_thrust(thrust: float, full: float) -> float:
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """Return the change of thrust of one thruster with the speed of advance.
 
-    Thrust decreases when it drives the boat on and increases when it brakes.
+    Thrust decreases when it drives its place on the hull on and increases when it brakes it.
 
     Args:
         m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
@@ -52,7 +52,8 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """
     full = q.full_ahead if s.thrust > 0.0 else q.full_astern
     reference = loss_reference_thrust(s.thrust, full)
-    loss = (q.loss + q.curve * abs(m.ur)) * m.ur * reference
+    speed = speed_of_advance(m, s, t)
+    loss = (q.loss + q.curve * abs(speed)) * speed * reference
     return thrust_wrench_at_mount(-t.gain * loss, s, t)
 
 
@@ -60,12 +61,15 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 class ThrustLossWithSpeed(Force):
     """Thrust of a constant command that decreases with the speed of advance.
 
-    dT = -(loss u_r + curve u_r |u_r|) |T|, or sqrt(|T| T_full) in the place of |T|: with the full
+    dT = -(loss u_a + curve u_a |u_a|) |T|, or sqrt(|T| T_full) in the place of |T|: with the full
     thrust specified, the loss grows with the revolutions n of the propeller, T = a n |n| - b |n| u.
+    The speed of advance is u_a = (u_r - r y) cos a + (v_r + r x) sin a, at the mount (x, y) along
+    the axis at the angle a.
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} \Delta T &= -g \left(l \, u_r + c \, u_r |u_r|\right) S \\ S &= "
+        r"\begin{aligned} \Delta T &= -g \left(l \, u_a + c \, u_a |u_a|\right) S \\ u_a &= "
+        r"\left(u_r - r y\right) \cos\alpha + \left(v_r + r x\right) \sin\alpha \\ S &= "
         r"\begin{cases} |T| & T_f = 0 \\ |T| \sqrt{\frac{T_f}{|T| + 0.001 \, T_f}} \approx "
         r"\sqrt{|T| \, T_f} & T_f > 0 \end{cases}, \quad T_f = \begin{cases} T_{f+} & T > 0 \\ "
         r"T_{f-} & T \le 0 \end{cases} \end{aligned}"

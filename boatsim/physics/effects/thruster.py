@@ -30,6 +30,22 @@ def thrust_wrench_at_mount(thrust: float, s: Any, q: Any) -> Wrench:
 
 
 @njit(inline="always")
+def speed_of_advance(m: Any, s: Any, t: Any) -> float:
+    """Return the speed of a thruster through the water along its axis [m/s].
+
+    It is that of the undisturbed flow at the mount: a propeller to the side of the hull advances
+    faster or slower in a turn, and one across the hull advances with the sway of its place.
+
+    Args:
+        m: Motion of the hull through the water [m/s, rad/s].
+        s: Signals with cosine and sine of the angle of the thruster.
+        t: Parameters with its mount `x`, `y` [m].
+    """
+    along, across = m.ur - t.y * m.r, m.vr + t.x * m.r
+    return float(along * s.cos_angle + across * s.sin_angle)
+
+
+@njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
     """Return force and moment on the hull of one thruster, fixed or steered, at its mount.
 

@@ -52,6 +52,39 @@ def test_a_boat_that_lies_still_between_moves_repeats_nothing() -> None:
     assert not repeated_rows(np.zeros((100, 2))).any()
 
 
+def decaying_swing(n: int = 1200) -> np.ndarray:
+    """An angle read in steps of 1 mrad that dry friction stops after a third of the rows."""
+    t = np.arange(n) / 30.0
+    return np.round(np.clip(1.0 - t / 13.5, 0.0, t) * np.sin(3.0 * t), 3)
+
+
+def test_a_body_that_comes_to_rest_repeats_nothing_however_long_it_rests() -> None:
+    swing = decaying_swing()
+    assert np.mean(np.diff(swing) == 0.0) > 0.6
+    assert not repeated_rows(swing[:, None]).any()
+    assert not repeated_rows(np.append(np.zeros(900), swing)[:, None]).any()
+
+
+def test_messages_in_bursts_are_found_beside_a_long_rest() -> None:
+    swing = decaying_swing()
+    last = np.arange(len(swing)) // 5 * 5
+    single = np.random.default_rng(1).integers(0, 300, 30)
+    last[single] = single
+    held_swing = swing[np.maximum.accumulate(last)]
+    found = np.flatnonzero(repeated_rows(held_swing[:, None]))
+    moving = np.flatnonzero(np.diff(held_swing[:250]) == 0.0) + 1
+    assert len(np.setdiff1d(moving, found)) < 0.1 * len(moving)
+    assert len(found[found > 500]) == 0
+
+
+def test_a_sensor_that_dies_while_the_body_moves_holds_its_value() -> None:
+    swing = decaying_swing()
+    last = np.minimum(np.arange(600) // 6 * 6, 96)
+    last[::7] = np.minimum(np.arange(600)[::7], 96)
+    dead = swing[np.maximum.accumulate(last)]
+    assert repeated_rows(dead[:, None])[110:].all()
+
+
 @pytest.mark.slow
 def test_a_diagnosis_of_repeated_fixes_is_that_of_the_fixes(tmp_path: Path) -> None:
     runs = [held(recorded(Real(power=(1.15, 0.85)), s), 4) for s in (1, 2, 3)]

@@ -170,7 +170,9 @@ def test_effects_added_for_predictions_are_listed_and_not_called_causes(
         assert "0.610 ± 0.040" in page
 
 
-def test_a_possible_effect_is_stated_with_a_formula_or_without_if_held_out_recordings_confirm_it() -> None:
+def test_a_possible_effect_is_stated_with_a_formula_or_without_if_held_out_recordings_confirm_it() -> (
+    None
+):
     findings = planar()
     law: Any = {
         "axis": "sway",

@@ -228,17 +228,22 @@ def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
     assert period[1] / period[0] == pytest.approx(1.25)
 
 
-@pytest.mark.parametrize("u", [1.5, -0.5])
-def test_thrust_lost_with_speed_scales_each_thruster(u: float) -> None:
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.5 * pi, 2.5])
+@pytest.mark.parametrize("thrust", [0.8, -0.5])
+def test_thrust_is_lost_with_the_speed_of_the_mount_along_the_axis(
+    thrust: float, angle: float
+) -> None:
+    """The speed of advance is the velocity of the mount, w x r + V, along the thruster's axis."""
     own, loss = Thruster(x=-0.6, y=0.19, gain=1.2), ThrustLossWithSpeed(loss=0.2)
-    for thrust in (0.8, -0.5):
-        given, less = (
-            signals(Thruster, thrust=t, angle=0.3) for t in (thrust, thrust - 0.2 * u * abs(thrust))
-        )
-        seen = np.add(
-            own.wrench(make_motion(u=u), given), loss.wrench(make_motion(u=u), given, own.values())
-        )
-        assert seen == pytest.approx(own.wrench(make_motion(u=u), less))
+    m = make_motion(u=1.5, v=-0.4, r=0.7)
+    mount = np.array([1.5, -0.4, 0.0]) + np.cross([0.0, 0.0, 0.7], [-0.6, 0.19, 0.0])
+    advance = float(mount @ np.array([cos(angle), sin(angle), 0.0]))
+    given, less = (
+        signals(Thruster, thrust=t, angle=angle)
+        for t in (thrust, thrust - 0.2 * advance * abs(thrust))
+    )
+    seen = np.add(own.wrench(m, given), loss.wrench(m, given, own.values()))
+    assert seen == pytest.approx(own.wrench(m, less))
 
 
 @pytest.mark.parametrize(("u", "kappa"), [(2.0, 0.2), (14.0, 0.5), (35.0, 1.0)])
