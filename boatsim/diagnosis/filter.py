@@ -268,6 +268,17 @@ class MappedRecording:
         stable = config.decay_step / max(motion.decay_rate, 1e-9)
         return min(usual, stable, motion.largest_step)
 
+    @property
+    def fitting_step(self) -> float:
+        """Largest integration step [s] of the free runs to which parameters are fitted.
+
+        The step of a free run, which suits a hull of 1.2 m, grows with the time scale of a longer
+        hull (Froude's law), up to the step of the filter.
+        """
+        usual = self.config.free_run_step
+        scaled = usual * priors.froude_time_scale(self.program.vessel)
+        return max(usual, min(scaled, self.largest_step))
+
     @cached_property
     def _motion(self) -> HullMotion:
         return hull_time_scales(self.program, self.values, self.commands[0], self.config)
@@ -462,7 +473,7 @@ class MappedRecording:
         return self._free_runs.result(key, simulate)
 
     def simulate_from(
-        self, values: Array, on: Array, begin: FreeRunStarts
+        self, values: Array, on: Array, begin: FreeRunStarts, step: float | None = None
     ) -> list[tuple[int, Array]]:
         """Simulate free runs from given states, with the recorded commands alone.
 
@@ -470,6 +481,7 @@ class MappedRecording:
             values: Parameter values of the vessel model for this recording.
             on: (effects,) 1 for the effects that act, else 0.
             begin: Where the runs begin and end, and the states they begin with.
+            step: Largest integration step [s]; None: that of the configuration.
 
         Returns:
             First row and channels (M, 2 NQ), as the recording would show them, of each free run.
@@ -480,7 +492,7 @@ class MappedRecording:
         out = np.full((len(begin.starts), len(self.times), 2 * nq), np.nan)
         self.program.estimation_functions.simulate_intervals(
             self.times_and_commands,
-            self.config.free_run_step,
+            self.config.free_run_step if step is None else step,
             VesselNumbers(rigid_body_values(values), values, on),
             begin.starts,
             begin.ends,

@@ -16,7 +16,9 @@ class FilterConfig:
         0.02,
         "s",
         "Largest integration step of a free run: the step of the simulation, so that time lags "
-        "are averaged alike.",
+        "are averaged alike. Parameters of hulls longer than 1.2 m are fitted to free runs with a "
+        "step that grows with the square root of the length, by which the path changes by less "
+        "than 1e-5 lengths.",
         low=1e-4,
     )
     filter_step: float = setting(

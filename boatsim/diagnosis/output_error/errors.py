@@ -68,7 +68,7 @@ class OutputErrors:
         parts, weights = list[Array](), iter(np.sqrt(self.weights))
         for mapped, begin in zip(self.recordings, starts or self.starts(found), strict=True):
             values = self.problem.parameter_vector(mapped, found.free, found.theta)
-            for first, simulated in mapped.simulate_from(values, on, begin):
+            for first, simulated in mapped.simulate_from(values, on, begin, mapped.fitting_step):
                 weight = next(weights)
                 parts += [weight * error for error in self._of_run(mapped, first, simulated)]
             self._count(mapped)
@@ -76,7 +76,7 @@ class OutputErrors:
 
     def _count(self, mapped: MappedRecording) -> None:
         """Count the work of the free runs over a recording."""
-        steps = np.full(len(mapped.times), self.problem.config.filter.free_run_step)
+        steps = np.full(len(mapped.times), mapped.fitting_step)
         integrations = integration_count(mapped.times, steps)
         self.problem.work_count.add_pass(integrations, 0, mapped.program.module.NQ, 0.0)
 
