@@ -8,6 +8,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS
+from boatsim.recordings.importing.foreign_words import plain_name, translate_words
 
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
@@ -123,7 +124,7 @@ def _hardly_decreases(values: Array) -> bool:
 
 
 def _is_called_a_time(name: str) -> bool:
-    words = set(re.split(r"[^a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()))
+    words = set(_words(name))
     return bool(words & TIME_WORDS) and not words & NOT_NOW
 
 
@@ -279,7 +280,8 @@ def _after_midnight(t: Array) -> Array:
 
 def _words(name: str) -> list[str]:
     """Words of a name in lower case, at least one."""
-    return re.findall(r"[a-zµ]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()) or [""]
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain_name(name)).lower()
+    return translate_words(re.findall(r"[a-zµ\ufffd]+", parted)) or [""]
 
 
 def unit_of_counted_times(name: str, values: Array) -> str:

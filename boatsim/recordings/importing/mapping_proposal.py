@@ -17,6 +17,7 @@ from boatsim.recordings.importing.effort_allocation import (
     allocation_lines,
     mixing_lines,
 )
+from boatsim.recordings.importing.foreign_words import english_unit
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.motion_begin import begins_by_motion
 from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
@@ -36,6 +37,7 @@ from boatsim.recordings.importing.signal_classification import (
     classify_signals,
     has_opposite_sense,
     has_stated_unit,
+    may_be_course,
     side_from_tokens,
     tokenize_name,
 )
@@ -440,6 +442,8 @@ def _comment(g: Classification, others: Sequence[Classification]) -> str:
     parts = [f"{_sampling_rate(g.signal):.3g} Hz"]
     if g.why:
         parts.append(g.why)
+    if g.column == "psi_rad" and may_be_course(g.name):
+        parts.append("CHECK: a heading, or a course over ground, which is none?")
     if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
         parts.append(f"also {', '.join(also)}")
     return "  # " + "; ".join(parts)
@@ -829,7 +833,7 @@ def _is_thrust_by_revolutions(drive: VesselChannel, g: Classification) -> bool:
 
 def _unit(g: Classification) -> str:
     if g.signal.unit:
-        return g.signal.unit
+        return english_unit(g.signal.unit) or g.signal.unit
     return {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 
