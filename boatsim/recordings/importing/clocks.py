@@ -96,7 +96,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
     for name, values in columns.items():
         if _hardly_decreases(values):
             increasing[name] = values
-    for is_likely in (dates.__contains__, _is_called_a_time, lambda n: _is_epoch(increasing[n])):
+    for is_likely in (dates.__contains__, is_called_a_time, lambda n: _is_epoch(increasing[n])):
         names = list(filter(is_likely, increasing))
         if names:
             return max(names, key=lambda n: len(np.unique(increasing[n])))
@@ -123,7 +123,8 @@ def _hardly_decreases(values: Array) -> bool:
     return forward >= MIN_FORWARD and float(np.mean(steps < 0.0)) <= MAX_BACKWARD
 
 
-def _is_called_a_time(name: str) -> bool:
+def is_called_a_time(name: str) -> bool:
+    """Return whether the name of a column has a word for the time of its row."""
     words = set(_words(name))
     return bool(words & TIME_WORDS) and not words & NOT_NOW
 

@@ -70,7 +70,9 @@ MEANINGS = {
     "direction": "richtung dirección direzione richting retning riktning",
     "wind direction": "windrichtung windwinkel vindretning windrichting vindriktning",
     "wind speed": "windgeschwindigkeit windstärke vindstyrke windsnelheid vindhastighet",
-    "acceleration": "beschleunigung accélération aceleración accelerazione akselerasjon versnelling",
+    "acceleration": (
+        "beschleunigung accélération aceleración accelerazione akselerasjon versnelling"
+    ),
     "current": "strömung corriente corrente strøm stroming",
     "voltage": "spannung voltaje tensione spenning",
     "temperature": "temperatur température temperatura temperatuur",
@@ -89,6 +91,11 @@ MEANINGS = {
     "date": "datum fecha dato",
     "hour": "stunde heure hora",
     "second": "sekunde sekunden seconde secondes segundos sekunder seconden",
+    "value": "wert messwert valeur valor valore waarde verdi värde",
+    "unit": "einheit unité unidad unità unidade eenheid enhet enhed",
+    "name": "bezeichnung nombre naam navn namn",
+    "sensor": "messstelle fühler capteur sensore",
+    "quantity": "messgröße grandeur magnitud grandezza grootheid størrelse",
     "deg": "grad degré degrés grado grados gradi graden grader",
     "kn": "knoten nœud nœuds noeuds nudo nudos knop knopen nodi nós",
     "percent": "prozent pourcent procent prosent porcentaje",
@@ -136,10 +143,10 @@ ELECTRICAL = {"voltage", "current", "temperature", "motor", "propeller"}
 
 
 def plain_name(name: str) -> str:
-    """Return a name without accents; letters that were lost are the character U+FFFD.
+    r"""Return a name without accents; letters that were lost are the character U+FFFD.
 
     A name in UTF-8 that was read as Latin 1 is restored. Control characters and signs of other
-    encodings (`L\\x84nge`, `L?nge`) between letters are letters that were lost.
+    encodings (`L\x84nge`, `L?nge`) between letters are letters that were lost.
 
     Args:
         name: The name.

@@ -176,9 +176,9 @@ def tokenize_name(name: str) -> list[str]:
 
 
 def _words_as_written(name: str) -> list[str]:
-    """The words and numbers of a name in lower case, without accents, in the language of the log."""
-    if not name.isascii() and (unit := BRACKETED.search(name)):
-        name = f"{name[: unit.start()]} {english_unit(unit[1]) or unit[1]}"
+    """The words and numbers of a name in lower case, without accents, not translated."""
+    if not name.isascii() and (found := BRACKETED.search(name)):
+        name = f"{name[: found.start()]} {english_unit(found[1]) or found[1]}"
     parted = re.sub(
         r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", plain_name(name)
     ).lower()
