@@ -123,7 +123,7 @@ def long_format(columns: Mapping[str, Sequence[str]], separator: str) -> LongFor
 def _columns_by_name(
     sample: Mapping[str, Sequence[str]], separator: str
 ) -> tuple[LongFormat, list[str], bool] | None:
-    """The columns by their names and first rows, columns of words, and whether the names are enough.
+    """The columns by names and first rows, columns of words, and whether the names are enough.
 
     None for a table that is not in long format.
     """
