@@ -104,6 +104,7 @@ KINDS = {
     "force": ("N", "kN"),
 }
 SIDED = ("port", "starboard")
+BY_ORDER = "; CHECK: by order only"
 BY_NUMBER = "; CHECK: by number, in the order of the vessel's drives"
 # Numbers of a helm are degrees if the largest is at least this share of full helm
 MIN_HELM_SHARE = 0.6
@@ -508,9 +509,11 @@ def _command_lines(
     questions: list[str] = []
     if not allocated:
         chosen = _match_channels(best, drives, moving, turning)
-        if not chosen and allocation_lines(drives, best):
-            unnamed = unnamed._replace(outputs=())  # orders of another form have names
         by_motion = _match_unnamed(drives, chosen, moving, turning, unnamed)
+        is_open = bool(by_motion.questions) or len(by_motion.found) < len(drives)
+        if not chosen and is_open and allocation_lines(drives, best):  # orders that have names
+            named_only = unnamed._replace(outputs=())
+            by_motion = _match_unnamed(drives, chosen, moving, turning, named_only)
         chosen, questions = by_motion.found, by_motion.questions
         if by_motion.throttle and by_motion.steering and not chosen:
             pair = (by_motion.throttle, by_motion.steering)
@@ -717,11 +720,13 @@ def _match_unnamed(
     missing = [d for d in drives if d.name not in found]
     ordered = _signals_of_matching_stream(left, len(missing))
     called = _unassigned([*left, *filter(is_called_an_output, unnamed.outputs)], found)
-    if missing and not ordered and not questions and called:
+    if not ordered and not questions:
         ordered = _signals_of_matching_stream(called, len(missing))
-        if not _are_two_sides(missing, ordered):
-            questions.append(_question_of_order(missing, called))
-    found |= _match_by_order(missing, ordered, turning)
+    by_order = _match_by_order(missing, ordered, turning)
+    guessed = [d for d in missing if by_order.get(d.name, ("", BY_ORDER))[1] == BY_ORDER]
+    if guessed and called and not questions:
+        questions.append(_question_of_order(guessed, called))
+    found |= by_order
     return MatchByMotion(found, questions)
 
 
@@ -729,7 +734,8 @@ def _question_of_order(missing: Sequence[VesselChannel], ordered: Sequence[Class
     """A line that asks which signal is which drive, where neither name nor motion shows it."""
     signals = ", ".join(_without_control_characters(g.name) for g in ordered)
     names = " and ".join(drive.name for drive in missing)
-    return f"# CHECK: which of {signals} is {names}? Neither names nor the motion show it"
+    verb = "is" if len(missing) == 1 else "are"
+    return f"# CHECK: which of {signals} {verb} {names}? Neither names nor the motion show it"
 
 
 def _are_two_sides(missing: Sequence[VesselChannel], ordered: Sequence[Classification]) -> bool:
@@ -830,7 +836,7 @@ def _match_by_order(
     """Signals of channels by order; two sides are exchanged if the turning shows it."""
     why = "; CHECK: the only signal that is left"
     if len(left) > 1:
-        why = "; CHECK: by order only"
+        why = BY_ORDER
     sides = [side_from_tokens(frozenset(tokenize_name(d.name))) for d in missing]
     if len(left) == 2 and sorted(sides) == list(SIDED):
         port = sides.index(SIDED[0])

@@ -75,12 +75,12 @@ def numbered_outputs(log: Log, classified: Sequence[Classification]) -> list[Cla
         whole = frozenset(tokenize_name(name))
         if len(numbers) != 1 or whole & NO_OUTPUTS:
             continue
-        stem, units = tokens[: numbers[0]], tokens[numbers[0] + 1 :]
-        if len(stem) != 1 or any(word not in WORDS for word in units):
+        before, units = tokens[: numbers[0]], tokens[numbers[0] + 1 :]
+        if len(before) != 1 or any(word not in WORDS for word in units):
             continue
-        word = WORDS[units[0]] if units else ""
-        g = Classification(name, signal, "command", word, 0.0, "", whole)
-        families.setdefault(stem[0], []).append(g)
+        unit = WORDS[units[0]] if units else ""
+        g = Classification(name, signal, "command", unit, 0.0, "", whole)
+        families.setdefault(before[0], []).append(g)
     found: list[Classification] = []
     for stem, family in families.items():
         if stem in OUTPUT_STEMS or len(family) > 1:
