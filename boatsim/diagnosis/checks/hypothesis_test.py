@@ -369,7 +369,7 @@ def _positions_are_by_satellites(recordings: Sequence[Recording]) -> bool:
 
 
 def _evidence_of_satellites(ties: Sequence[_Scored], by_satellites: bool) -> str:
-    """What a satellite receiver shows of tied faults; "" if all or none change positions."""
+    """A sentence on tied faults by the kind of receiver; "" if all or none change positions."""
     if len({candidate.moves_positions for candidate, _ in ties}) < 2:
         return ""
     if by_satellites:

@@ -260,6 +260,7 @@ def times_of_day_from_digits(values: Array) -> Array | None:
         return None
     if (finite % 100.0 >= 60.0).any() or (finite // 100.0 % 100.0 >= 60.0).any():
         return None
+    values = np.where(np.isfinite(values), values, np.nan)
     seconds = HOUR * (values // 10000.0) + MINUTE * (values // 100.0 % 100.0) + values % 100.0
     t = _after_midnight(seconds)
     steps, of_digits = np.diff(t[np.isfinite(t)]), np.diff(finite)

@@ -119,7 +119,7 @@ def _times_of_rows(
         called[plain], values[plain] = name, np.full(count, np.nan)
         for rows in parts:
             cells = column_of_texts(name, [columns[name][i] for i in rows.tolist()], separator)
-            values[plain][rows] = cells.values
+            values[plain][rows] = np.where(np.isfinite(cells.values), cells.values, np.nan)
             if cells.are_dates and plain not in dates:
                 dates.append(plain)
     most = max(found.values(), key=lambda signal: len(signal.rows)).rows

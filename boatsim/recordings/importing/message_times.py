@@ -54,8 +54,8 @@ def _largest_distance(one: str, other: str) -> float:
 
 def _are_one_position(one: str, other: str) -> bool:
     """Whether two names differ in the axis of a position only."""
-    words = [tokenize_name(name) for name in (one, other)]
-    axes = {kind_of_place(name) or own[-1] for name, own in zip((one, other), words, strict=True)}
+    words = [tokenize_name(name) or [""] for name in (one, other)]
+    axes = {kind_of_place(one) or words[0][-1], kind_of_place(other) or words[1][-1]}
     return axes in POSITIONS and words[0][:-1] == words[1][:-1]
 
 

@@ -164,7 +164,7 @@ def _is_mixed(
 
 
 def _note(effect: DriveEffect) -> str:
-    """What the owner must check of an output that the motion shows."""
+    """The note on an output that the motion shows, for its owner to check."""
     done = []
     if effect.ahead:
         way = "goes ahead" if effect.ahead > 0.0 else "goes astern"

@@ -215,6 +215,33 @@ def test_words_repeats_and_cut_rows_are_left_out(tmp_path):
     assert "names 5 signals" in remarks and "the header again" in remarks
 
 
+def test_wrong_times_and_a_name_without_letters_hurt_only_their_rows(tmp_path):
+    lines = ["time,name,value"]
+    for i, (t, name, value) in enumerate(rows_of_run()):
+        lines.append(f"{'-inf' if i == 500 else f'{t:.4f}'},{name},{value}")
+        if i % 20 == 0:
+            lines.append(f"{t:.4f},??,1")
+    log = read(write(tmp_path, lines))
+    assert "??" in log.signals
+    finite = np.isfinite(log.signals["heading_deg"].values)
+    assert finite.sum() >= COUNT - 1
+    check_motion_of_most(imported(tmp_path / "log.csv")[0])
+
+
+def check_motion_of_most(found: Recording) -> None:
+    assert len(found) >= COUNT - 1
+    assert found.t[-1] == pytest.approx(RUN["t"][-1] - RUN["t"][0], abs=1e-3)
+
+
+def test_one_time_of_another_epoch_takes_no_memory(tmp_path):
+    """A row of the year 1970 in a log of 2023 makes it 53 years long."""
+    turning = [(t, "gyro_z", f"{r:.6f}") for t, r in zip(RUN["t"], RUN["r"], strict=True)]
+    rows = sorted(rows_of_run(0.0) + turning)
+    rows[0] = (0.0, *rows[0][1:])
+    log = read(table(tmp_path, rows, "time,name,value"))
+    assert "psi_rad" in propose_map(log, None, DRIVES, DOF, None, lambda: SPEED_AT_80)
+
+
 def test_a_signal_in_two_units_has_none(tmp_path):
     lines = ["time,name,value,unit"]
     for i, (t, name, value) in enumerate(rows_of_run()):
