@@ -6,7 +6,7 @@ Loggers of CAN, MQTT and time series write them. Each signal becomes a column on
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -55,12 +55,14 @@ class LongFormat:
         values: Columns with its value, of which one is filled in each row.
         unit: Column with its unit; "" without one.
         others: Other columns, one of which holds the times.
+        is_certain: Whether the columns of names and values are both called so.
     """
 
     names: tuple[str, ...]
     values: tuple[str, ...]
     unit: str
     others: tuple[str, ...]
+    is_certain: bool
 
 
 @dataclass(frozen=True)
@@ -104,26 +106,28 @@ def long_format(columns: Mapping[str, Sequence[str]], separator: str) -> LongFor
     found = _columns_by_name(sample, separator)
     if found is None:
         return None
-    form, labels, is_certain = found
+    form, labels = found
     primary = form.names[0]
     count = Counter(columns[primary])
     most = MAX_SIGNALS if primary in labels else MAX_NUMBERED
     rows = len(columns[primary])
     if len(count) > most or rows < MIN_ROWS * len(count):
         return None
-    if not is_certain and not _changes_as_signals_do(columns[primary], form, columns, separator):
+    if not form.is_certain and not _changes_as_signals_do(
+        columns[primary], form, columns, separator
+    ):
         return None
     further = []
     for label in labels:
         if label != primary and _tells_signals_apart(columns[label], columns[primary]):
             further.append(label)
-    return LongFormat((*further, primary), form.values, form.unit, form.others)
+    return replace(form, names=(*further, primary))
 
 
 def _columns_by_name(
     sample: Mapping[str, Sequence[str]], separator: str
-) -> tuple[LongFormat, list[str], bool] | None:
-    """The columns by names and first rows, columns of words, and whether the names are enough.
+) -> tuple[LongFormat, list[str]] | None:
+    """The columns by their names and the first rows, and the columns of words.
 
     None for a table that is not in long format.
     """
@@ -153,11 +157,11 @@ def _columns_by_name(
         if not is_named and QUANTITIES & set(words[values[0]] if values else ()):
             return None
     others = [name for name in others if name not in values]
-    if not values or not others:
+    is_certain = is_named and has_values
+    if not values or not (others or is_certain):
         return None
     unit = units[0] if units else ""
-    form = LongFormat((primary,), tuple(values), unit, tuple(others))
-    return form, free, is_named and has_values
+    return LongFormat((primary,), tuple(values), unit, tuple(others), is_certain), free
 
 
 def _has_words(cells: Sequence[str], separator: str) -> bool:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import (
     time_column,
@@ -54,12 +55,20 @@ def signals_of_long_table(
         columns: Column -> texts (N,).
         separator: Separator of the table.
         units: Column -> unit, by the header.
+
+    Raises:
+        BadInput: No column holds times; without the name of the file.
     """
     form = long_format(columns, separator)
     if form is None:
         return None
     found = signals_of(columns, form)
     clock, t = _times_of_rows(columns, form, found, separator)
+    if not clock and form.is_certain:
+        raise BadInput(
+            f"has a row for each value (column {form.names[-1]} names the signals), but no column "
+            "holds their times; call it time"
+        )
     if not clock:
         return None
     remarks: list[str] = []
@@ -70,9 +79,10 @@ def signals_of_long_table(
         cells = without_placeholders(column_of_texts(name, signal.cells, separator))
         if not np.isfinite(cells.values).any():
             continue
-        own = t[signal.rows]
-        spread = spread_coarse_times(own, [cells.values])
-        samples[name] = (own if spread is None else spread.t, cells.values)
+        known = np.isfinite(cells.values)
+        own, values = t[signal.rows][known], cells.values[known]
+        spread = spread_coarse_times(own, [values])
+        samples[name] = (own if spread is None else spread.t, values)
         stated[name] = signal.unit or cells.unit or units.get(form.values[0], "")
         if len(signal.units) > 1:
             remarks.append(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.cells import (
     EMPTY_WORDS,
@@ -165,7 +166,7 @@ def _long_parquet(path: Path) -> Log | None:
         columns = _texts_of_parquet(file.read())
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged_log_error(path, "Parquet", error) from error
-    long = signals_of_long_table(columns, ",", {})
+    long = _long_table(path, columns, ",", {})
     if long is None:
         return None
     remarks = [*long.remarks, *(f"row {row + 1}, {message}" for message, row in long.cells)]
@@ -240,7 +241,7 @@ def _csv(path: Path) -> Log:
     head = _read_header(path)
     table = _read_fast(path, head) or _read_line_by_line(path, head)
     if may_be_long(table.texts(SAMPLE), head.separator):
-        long = signals_of_long_table(table.texts(), head.separator, head.units)
+        long = _long_table(path, table.texts(), head.separator, head.units)
         if long is not None:
             return _long_log(path, head, table, long)
     remarks, lines = table.remarks, table.lines
@@ -386,6 +387,16 @@ class _Texts:
             begin = cells[:rows]
             found[name] = begin if isinstance(begin, Sequence) else begin.to_pylist()
         return found
+
+
+def _long_table(
+    path: Path, columns: Mapping[str, Sequence[str]], separator: str, units: Mapping[str, str]
+) -> LongTable | None:
+    """The signals of a table in long format; None for another table. Raises BadInput."""
+    try:
+        return signals_of_long_table(columns, separator, units)
+    except BadInput as error:
+        raise file_error(path, str(error)) from None
 
 
 def _long_log(path: Path, head: _Header, table: _Texts, long: LongTable) -> Log:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boatsim.errors import BadInput
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.long_format import long_format
 from boatsim.recordings.importing.mapping import parse_map
@@ -213,6 +214,29 @@ def test_words_repeats_and_cut_rows_are_left_out(tmp_path):
     found, remarks, _ = imported(write(tmp_path, lines))
     check_motion(found)
     assert "names 5 signals" in remarks and "the header again" in remarks
+
+
+def test_rows_without_a_value_are_no_samples(tmp_path):
+    rows = []
+    for i, (t, name, value) in enumerate(rows_of_run()):
+        rows.append((t, name, "" if i % 3 else value))
+    log = read(table(tmp_path, rows, "time,name,value"))
+    assert np.array_equal(log.signals["lat"].t, log.signals["lon"].t)
+    assert np.isfinite(log.signals["lon"].values).sum() == COUNT // 3
+    found, _, _ = imported(tmp_path / "log.csv")
+    assert np.ptp(found["x_m"][np.isfinite(found["x_m"])]) == pytest.approx(
+        np.ptp(RUN["north"]), rel=0.02
+    )
+
+
+def test_a_long_table_without_times_gets_one_line(tmp_path):
+    lines = ["name,value", *(f"{name},{value}" for _, name, value in rows_of_run())]
+    with pytest.raises(BadInput) as caught:
+        read(write(tmp_path, lines))
+    assert str(caught.value) == (
+        f"{tmp_path / 'log.csv'}: has a row for each value (column name names the signals), but "
+        "no column holds their times; call it time"
+    )
 
 
 def test_wrong_times_and_a_name_without_letters_hurt_only_their_rows(tmp_path):
