@@ -303,7 +303,19 @@ def tables() -> list[bytes]:
     dated = "date_time,x_m,mode\n" + "".join(
         f"2024-05-01T10:00:{i:02d}Z,{i},AUTO\n" for i in range(ROWS)
     )
-    return [table().encode(), begin, dated.encode()]
+    return [table().encode(), begin, dated.encode(), long_table().encode()]
+
+
+def long_table() -> str:
+    """A table with a row for each value, of which one is an object of JSON."""
+    lines = ["time,topic,value,unit"]
+    for i in range(2 * ROWS):
+        t = 0.1 * i
+        lines.append(f"{t:.3f},lat,{58.0 + 1e-5 * i:.7f},deg")
+        lines.append(f"{t + 0.002:.3f},lon,{11.0 + 2e-5 * i:.7f},deg")
+        lines.append(f"{t + 0.004:.3f},Kurs,{3.0 * i % 360:.2f},°")
+        lines.append(f'{t + 0.006:.3f},esc,"{{""m1"": {i % 90.0}, ""m2"": {90.0 - i % 90}}}",')
+    return "\n".join(lines) + "\n"
 
 
 def sentences() -> list[bytes]:

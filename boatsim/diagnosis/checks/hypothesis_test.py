@@ -48,6 +48,7 @@ from boatsim.view.formatting import format_number, format_odds
 
 PLANAR_AXES = ("surge", "sway", "yaw")
 MAX_LEAD = 50.0  # [nats] limit of an exponent
+POSITION_FIX, BY_SATELLITES = "position_fix", "gnss"  # fact and its value
 MapRecording = Callable[[Recording], MappedRecording]
 
 
@@ -60,6 +61,9 @@ class Score(NamedTuple):
     evidence: float  # [nats], coefficients refitted
     unexplained: float  # unexplained force as a share of the force of the drives
     error: Exception | None = None  # why the recording could not be fitted
+
+
+_Scored = tuple[Reinterpretation, Score]
 
 
 @dataclass(frozen=True)
@@ -289,7 +293,7 @@ def _best_finding(
 
 
 def _clear_finding(
-    scored: list[tuple[Reinterpretation, Score]],
+    scored: list[_Scored],
     recorded: Score,
     recordings: list[Recording],
     comparison: Comparison,
@@ -301,7 +305,7 @@ def _clear_finding(
     """
     config = comparison.config
     best = max(score.evidence for _, score in scored)
-    ties, rivals = [], []
+    ties, rivals = list[_Scored](), list[_Scored]()
     second = recorded.evidence
     for candidate, score in _without_near_rotations(scored, config):
         behind = best - score.evidence
@@ -316,6 +320,9 @@ def _clear_finding(
     required = max(config.compare_min_gain, config.compare_min_gain_per_row * rows)
     if gain < required or best - second < config.compare_min_lead:
         return None
+    by_satellites = _positions_are_by_satellites(recordings)
+    if by_satellites:
+        ties.sort(key=lambda each: each[0].moves_positions)  # stable
     chosen, score = ties[0]
     if not comparison.simulations_agree(recordings, chosen.changes):
         return None
@@ -329,11 +336,14 @@ def _clear_finding(
             f". The unexplained force is {_per_cent(score.unexplained)} of the force of the "
             f"drives instead of {_per_cent(recorded.unexplained)}"
         )
-    others = [(candidate.words, candidate.changes) for candidate, _ in ties[1:]]
+    others = []
+    for candidate, _ in ties[1:]:
+        others += [(candidate.words, candidate.changes), *candidate.alternatives]
     if others:
         evidence.append(
             f". Because this boat is symmetric, another fault fits equally well: {others[0][0]}"
         )
+        evidence.append(_evidence_of_satellites(ties, by_satellites))
     rivals.sort(key=lambda each: -each[1].evidence)
     if rivals and not others:
         evidence.append(f". Another fault fits almost as well: {rivals[0][0].words}")
@@ -349,12 +359,34 @@ def _clear_finding(
     )
 
 
-def _without_near_rotations(
-    scored: list[tuple[Reinterpretation, Score]], config: ChecksConfig
-) -> list[tuple[Reinterpretation, Score]]:
+def _positions_are_by_satellites(recordings: Sequence[Recording]) -> bool:
+    """Whether the notes on all recordings state that a satellite receiver measured the positions.
+
+    An import from latitudes and longitudes states it. Its positions count north and east, so that
+    they are mirrored only if another program has changed them.
+    """
+    return all(one.notes.facts.get(POSITION_FIX) == BY_SATELLITES for one in recordings)
+
+
+def _evidence_of_satellites(ties: Sequence[_Scored], by_satellites: bool) -> str:
+    """A sentence on tied faults by the kind of receiver; "" if all or none change positions."""
+    if len({candidate.moves_positions for candidate, _ in ties}) < 2:
+        return ""
+    if by_satellites:
+        return (
+            ", but it is less likely: a satellite receiver measured the positions, which counts "
+            "north and east"
+        )
+    return (
+        ". The log does not show which: if a satellite receiver measured the positions, the "
+        "drives are the likelier fault"
+    )
+
+
+def _without_near_rotations(scored: list[_Scored], config: ChecksConfig) -> list[_Scored]:
     """Drop rotations of the heading near a better one, because they are no rivals of it."""
     limit = np.radians(config.rotation_min_distance)
-    kept: list[tuple[Reinterpretation, Score]] = []
+    kept: list[_Scored] = []
     rotations: list[float] = []
     for candidate, score in sorted(scored, key=lambda each: -each[1].evidence):
         if candidate.name == "heading_turned":

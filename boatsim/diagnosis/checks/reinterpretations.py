@@ -55,6 +55,11 @@ class Reinterpretation:
     changes: tuple[Change, ...]
     alternatives: tuple[tuple[str, tuple[Change, ...]], ...] = ()
 
+    @property
+    def moves_positions(self) -> bool:
+        """Whether the correction changes positions, which satellite receivers do not confuse."""
+        return bool(corrected_columns(self.changes) & {"x_m", "y_m"})
+
 
 def reinterpretations(
     recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig

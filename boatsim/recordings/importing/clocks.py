@@ -8,6 +8,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS
+from boatsim.recordings.importing.foreign_words import plain_name, translate_words
 
 # Names of columns that are times; a unit may follow
 CLOCK = re.compile(
@@ -95,7 +96,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
     for name, values in columns.items():
         if _hardly_decreases(values):
             increasing[name] = values
-    for is_likely in (dates.__contains__, _is_called_a_time, lambda n: _is_epoch(increasing[n])):
+    for is_likely in (dates.__contains__, is_called_a_time, lambda n: _is_epoch(increasing[n])):
         names = list(filter(is_likely, increasing))
         if names:
             return max(names, key=lambda n: len(np.unique(increasing[n])))
@@ -122,8 +123,9 @@ def _hardly_decreases(values: Array) -> bool:
     return forward >= MIN_FORWARD and float(np.mean(steps < 0.0)) <= MAX_BACKWARD
 
 
-def _is_called_a_time(name: str) -> bool:
-    words = set(re.split(r"[^a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()))
+def is_called_a_time(name: str) -> bool:
+    """Return whether the name of a column has a word for the time of its row."""
+    words = set(_words(name))
     return bool(words & TIME_WORDS) and not words & NOT_NOW
 
 
@@ -258,6 +260,7 @@ def times_of_day_from_digits(values: Array) -> Array | None:
         return None
     if (finite % 100.0 >= 60.0).any() or (finite // 100.0 % 100.0 >= 60.0).any():
         return None
+    values = np.where(np.isfinite(values), values, np.nan)
     seconds = HOUR * (values // 10000.0) + MINUTE * (values // 100.0 % 100.0) + values % 100.0
     t = _after_midnight(seconds)
     steps, of_digits = np.diff(t[np.isfinite(t)]), np.diff(finite)
@@ -279,7 +282,8 @@ def _after_midnight(t: Array) -> Array:
 
 def _words(name: str) -> list[str]:
     """Words of a name in lower case, at least one."""
-    return re.findall(r"[a-zµ]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()) or [""]
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain_name(name)).lower()
+    return translate_words(re.findall(r"[a-zµ\ufffd]+", parted)) or [""]
 
 
 def unit_of_counted_times(name: str, values: Array) -> str:

@@ -11,6 +11,7 @@ from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import median_sampling_rate
 from boatsim.recordings.importing.signal_classification import (
+    PULSE,
     Classification,
     side_from_tokens,
 )
@@ -21,6 +22,8 @@ MIN_SHARE = 1e-6  # smaller shares of a force are rounding
 THROTTLE = {"throttle", "thrust", "gas", "surge", "forward", "speed"}
 STEERING = {"steer", "steering", "turn", "yaw", "helm", "rudder"}
 FULL_SHARES = (1.0, 100.0)  # numbers of a full order: a share, or per cent
+PULSES = -1.0  # in their place, for pulses of a servo
+USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
 EXCESS = 1.01  # by which a full order may exceed its number, by rounding
 
 
@@ -74,25 +77,48 @@ def mixing_lines(
     """
     throttle = [g for g in orders if g.tokens & THROTTLE and not g.tokens & STEERING]
     steering = [g for g in orders if g.tokens & STEERING and not g.tokens & THROTTLE]
-    levers = [drive.lever for drive in drives if drive.lever is not None]
-    if len(throttle) != 1 or len(steering) != 1 or len(levers) < len(drives):
+    if len(throttle) != 1 or len(steering) != 1:
         return {}, []
     if side_from_tokens(throttle[0].tokens) or side_from_tokens(steering[0].tokens):
         return {}, []
-    if not levers or not min(levers) < 0.0 < max(levers):
-        return {}, []
-    full = [_full_order(g) for g in (throttle[0], steering[0])]
+    lines = lines_of_mixer(drives, throttle[0], steering[0], turning)
+    return lines, [throttle[0], steering[0]] if lines else []
+
+
+def lines_of_mixer(
+    drives: Sequence[VesselChannel],
+    throttle: Classification,
+    steering: Classification,
+    turning: Turning,
+) -> dict[str, str]:
+    """Return the lines of fixed drives on both sides for a throttle and a steering order.
+
+    Args:
+        drives: Channels of the vessel.
+        throttle: Order of the sum of the thrusts.
+        steering: Order of their difference; the turning of the vessel shows the sign.
+        turning: Turning of the vessel.
+
+    Returns:
+        Channel -> line; none if the drives are not fixed on both sides, or the orders no shares.
+    """
+    levers = [drive.lever for drive in drives if drive.lever is not None]
+    if len(levers) < len(drives) or not levers or not min(levers) < 0.0 < max(levers):
+        return {}
+    full = [_full_order(g) for g in (throttle, steering)]
     if 0.0 in full:
-        return {}, []
-    correlation = turning.correlation((steering[0], 1.0))
+        return {}
+    correlation = turning.correlation((steering, 1.0))
     lines = {}
     for drive in drives:
-        lines[drive.name] = _mixed_line(drive, throttle[0], steering[0], full, correlation)
-    return lines, [throttle[0], steering[0]]
+        lines[drive.name] = _mixed_line(drive, throttle, steering, full, correlation)
+    return lines
 
 
 def _full_order(g: Classification) -> float:
-    """The number of a full order, 1 or 100; 0 for an order that is no share."""
+    """The number of a full order, 1 or 100, or -1 for pulses; 0 for an order that is no share."""
+    if PULSE[0] <= np.nanmin(g.signal.values) and np.nanmax(g.signal.values) <= PULSE[1]:
+        return PULSES
     largest = float(np.nanmax(np.abs(g.signal.values)))
     for full in FULL_SHARES:
         if largest <= EXCESS * full:
@@ -115,8 +141,8 @@ def _mixed_line(
     if to_starboard * (drive.lever or 0.0) < 0.0:
         sign = "-"
     terms = [
-        toml_value(f"{throttle.name} * {span / full[0]:.6g}"),
-        toml_value(f"{sign}{steering.name} * {span / full[1]:.6g}"),
+        _term_of_mixer(throttle, full[0], span, ""),
+        _term_of_mixer(steering, full[1], span, sign),
     ]
     return (
         f"{toml_key(drive.name)} = {{ sum = [{', '.join(terms)}], low = {drive.low:g}, high = "
@@ -124,6 +150,16 @@ def _mixed_line(
         f"{throttle.name} and {steering.name} are assumed to be mixed in equal shares of full "
         f"command; sign by the turning of the boat (correlation {correlation:+.2f})"
     )
+
+
+def _term_of_mixer(g: Classification, full: float, span: float, sign: str) -> str:
+    """An order as a share of the largest command of a drive."""
+    if full == PULSES:
+        low, neutral, high = g.signal.pulse or USUAL_PULSE
+        ends = f"low = {low:g}, neutral = {neutral:g}, high = {high:g}"
+        most = -span if sign else span
+        return f"{{ signal = {toml_value(g.name)}, {ends}, least = {-most:g}, most = {most:g} }}"
+    return toml_value(f"{sign}{g.name} * {span / full:.6g}")
 
 
 def _line(drive: VesselChannel, found: Sequence[Classification], row: Sequence[float]) -> str:

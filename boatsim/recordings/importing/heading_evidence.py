@@ -17,7 +17,7 @@ from boatsim.recordings.importing.signal_classification import (
     Classification,
     has_stated_unit,
 )
-from boatsim.recordings.importing.track import MIN_WINDOWS, WINDOW, Track, values_in_si
+from boatsim.recordings.importing.track import MAX_WINDOWS, MIN_WINDOWS, WINDOW, Track, values_in_si
 
 # Resultant length of the differences between course and heading, 1 for a constant difference: from
 # the first number on one follows the other, and below the second it does not. A vessel that drifts,
@@ -91,7 +91,8 @@ def rate_by_heading(g: Classification, heading: Classification) -> Classificatio
     at, psi = values_in_si(heading)
     if len(t) < MIN_WINDOWS or len(at) < MIN_WINDOWS:
         return g
-    rows = np.arange(max(t[0], at[0]), min(t[-1], at[-1]) - WINDOW, 0.5 * WINDOW)
+    begin, end = max(t[0], at[0]), min(t[-1], at[-1])
+    rows = np.arange(begin, end - WINDOW, max(0.5 * WINDOW, (end - begin) / MAX_WINDOWS))
     if len(rows) < MIN_WINDOWS:
         return g
     integral = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))

@@ -12,11 +12,15 @@ from boatsim.files import toml_key, toml_value
 from boatsim.physics.signals import RATES
 from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.channels import VesselChannel as VesselChannel
+from boatsim.recordings.importing.drive_evidence import MotionOfLog, motion_of_log
 from boatsim.recordings.importing.effort_allocation import (
     EFFORTS,
+    USUAL_PULSE,
     allocation_lines,
+    lines_of_mixer,
     mixing_lines,
 )
+from boatsim.recordings.importing.foreign_words import english_unit
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.motion_begin import begins_by_motion
 from boatsim.recordings.importing.motion_evidence import correct_classification_by_motion
@@ -36,6 +40,7 @@ from boatsim.recordings.importing.signal_classification import (
     classify_signals,
     has_opposite_sense,
     has_stated_unit,
+    may_be_course,
     side_from_tokens,
     tokenize_name,
 )
@@ -50,6 +55,16 @@ from boatsim.recordings.importing.track import (
     values_in_si,
 )
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
+from boatsim.recordings.importing.unnamed_drives import (
+    MAX_OUTPUTS,
+    TO_PORT,
+    TO_STARBOARD,
+    MatchByMotion,
+    is_called_an_output,
+    kind_of_drive,
+    match_by_motion,
+    numbered_outputs,
+)
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.order_signs import (
     EFFORT_COLUMNS,
@@ -58,7 +73,6 @@ from boatsim.recordings.order_signs import (
 )
 from boatsim.recordings.raw_table import file_error
 
-USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers
 MAX_ROW_RATE = 50.0  # [Hz] a higher rate of rows is not needed for the motion of boats
 MAX_LISTED = 400
 # Revolutions without a unit: the sizes relative to the range of the channel that a unit must have,
@@ -90,6 +104,10 @@ KINDS = {
     "force": ("N", "kN"),
 }
 SIDED = ("port", "starboard")
+BY_ORDER = "; CHECK: by order only"
+BY_NUMBER = "; CHECK: by number, in the order of the vessel's drives"
+# Numbers of a helm are degrees if the largest is at least this share of full helm
+MIN_HELM_SHARE = 0.6
 INCLINATIONS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
 
 
@@ -183,10 +201,14 @@ def propose_map(
     """
     known, used_signals = _stated_columns(log, stated or {})
     best: dict[str, list[Classification]] = {}
+    stated_motion: dict[str, list[Classification]] = {}
     classified = classify_signals(log, Body([d.name for d in drives], dof, turns_over))
+    numbered = numbered_outputs(log, classified)
     for g in correct_classification_by_motion(classified, log):
         if g.column not in known and g.name not in used_signals:
             best.setdefault(g.column, []).append(g)
+        elif known.get(g.column) == _expression(g):
+            stated_motion.setdefault(g.column, []).append(g)
     if reason := reason_poses_unusable(log, best, "yaw" in dof):
         raise file_error(log.path, reason)
     track = track_of(best)
@@ -201,8 +223,15 @@ def propose_map(
     if drives and not open_drives:
         commands = ["# all are above"]
     else:
-        turning, unit = Turning(best, log.frame == "ENU"), _RevolutionUnit(track, approach_speed)
-        commands, driven = _command_lines(best, open_drives, turning, unit)
+        enu = log.frame == "ENU"
+        seen = {**best, **stated_motion}
+        turning, unit = Turning(seen, enu), _RevolutionUnit(track, approach_speed)
+        motion = motion_of_log(seen, turning, track or track_of(seen), enu)
+        unnamed = _Unnamed(numbered, motion)
+        commands, driven = _command_lines(best, open_drives, turning, unit, unnamed)
+        if not drives and numbered:
+            names = ", ".join(_without_control_characters(g.name) for g in numbered)
+            commands.append(f"# {names} may be outputs to drives: --vessel shows which")
     # a measured force acts between the rows, too: its samples are all kept
     measured = any(names_load(tokenize_name(drive.name)) for drive in drives)
     lines = [
@@ -440,9 +469,18 @@ def _comment(g: Classification, others: Sequence[Classification]) -> str:
     parts = [f"{_sampling_rate(g.signal):.3g} Hz"]
     if g.why:
         parts.append(g.why)
+    if g.column == "psi_rad" and may_be_course(g.name):
+        parts.append("CHECK: a heading, or a course over ground, which is none?")
     if also := [_without_control_characters(o.name) for o in others if o is not g][:4]:
         parts.append(f"also {', '.join(also)}")
     return "  # " + "; ".join(parts)
+
+
+class _Unnamed(NamedTuple):
+    """Outputs without telling names, and the motion that may show what they are."""
+
+    outputs: Sequence[Classification]
+    motion: MotionOfLog
 
 
 def _command_lines(
@@ -450,6 +488,7 @@ def _command_lines(
     drives: Sequence[VesselChannel],
     turning: Turning,
     unit: "_RevolutionUnit",
+    unnamed: _Unnamed,
 ) -> tuple[list[str], list[Classification]]:
     """Lines of the vessel's channels, or without a vessel of all outputs that are not constant."""
     channels = [drive.name for drive in drives]
@@ -466,9 +505,20 @@ def _command_lines(
     taken: list[Classification] = []
     allocated, mixed = mixing_lines(drives, moving or best.get("stick", []), turning)
     taken += mixed
-    chosen = {}
+    chosen: dict[str, tuple[Classification, str]] = {}
+    questions: list[str] = []
     if not allocated:
         chosen = _match_channels(best, drives, moving, turning)
+        by_motion = _match_unnamed(drives, chosen, moving, turning, unnamed)
+        is_open = bool(by_motion.questions) or len(by_motion.found) < len(drives)
+        if not chosen and is_open and allocation_lines(drives, best):  # orders that have names
+            named_only = unnamed._replace(outputs=())
+            by_motion = _match_unnamed(drives, chosen, moving, turning, named_only)
+        chosen, questions = by_motion.found, by_motion.questions
+        if by_motion.throttle and by_motion.steering and not chosen:
+            pair = (by_motion.throttle, by_motion.steering)
+            allocated = lines_of_mixer(drives, *pair, turning)
+            taken += pair
     if not chosen and not allocated:
         allocated = allocation_lines(drives, best)
         taken += [best[kind][0] for kind in EFFORTS if allocated and kind in best]
@@ -489,6 +539,7 @@ def _command_lines(
         taken.append(g)
         g, unit_note = unit.with_unit(g, drive)
         lines.append(_channel_line(drive.name, g, drive, sense) + unit_note + why)
+    lines += questions
     lines += _side_lines(drives, chosen, turning)
     unsigned, efforts = _unsigned_order_lines(drives, chosen, best)
     lines += unsigned
@@ -618,7 +669,7 @@ def _match_channels(
     moving: Sequence[Classification],
     turning: Turning,
 ) -> dict[str, tuple[Classification, str]]:
-    """Signals of the channels by number, name, motion or order, and what the user must check."""
+    """Signals of the channels by number and name, and of a helm by the turning, with checks."""
     exact = {g.name: g for g in moving}
     found = _with_note({d.name: exact[d.name] for d in drives if d.name in exact}, "")
     for steers in (True, False):
@@ -636,10 +687,99 @@ def _match_channels(
         found |= _match_steering_channels(
             helms, named, _unassigned(moving, found), measured, turning
         )
+    return found
+
+
+def _match_unnamed(
+    drives: Sequence[VesselChannel],
+    named: Mapping[str, tuple[Classification, str]],
+    moving: Sequence[Classification],
+    turning: Turning,
+    unnamed: _Unnamed,
+) -> MatchByMotion:
+    """Signals of the channels that no name tells, by the motion or by order."""
+    found, questions = _corrected_by_motion(drives, named, unnamed.motion)
     left = _unassigned(moving, found)
     missing = [d for d in drives if d.name not in found]
-    found |= _match_by_order(missing, _signals_of_matching_stream(left, len(missing)), turning)
-    return found
+    ordered = _signals_of_matching_stream(left, len(missing))
+    is_decided = len(missing) == 1 == len(ordered) or _are_two_sides(missing, ordered)
+    mixer: MatchByMotion | None = None
+    if missing and not is_decided:
+        outputs = [*left, *unnamed.outputs][:MAX_OUTPUTS]
+        match = match_by_motion(missing, outputs, unnamed.motion)
+        if match.throttle:
+            mixer = match
+        for drive in missing:
+            if drive.name in match.found and _may_be(drive, match.found[drive.name][0]):
+                g, why = match.found[drive.name]
+                found[drive.name] = (_with_unit_of_helm(g, drive), why)
+        questions += match.questions
+    if mixer is not None:
+        return mixer
+    left = _unassigned(moving, found)
+    missing = [d for d in drives if d.name not in found]
+    ordered = _signals_of_matching_stream(left, len(missing))
+    called = _unassigned([*left, *filter(is_called_an_output, unnamed.outputs)], found)
+    if not ordered and not questions:
+        ordered = _signals_of_matching_stream(called, len(missing))
+    by_order = _match_by_order(missing, ordered, turning)
+    guessed = [d for d in missing if by_order.get(d.name, ("", BY_ORDER))[1] == BY_ORDER]
+    if guessed and called and not questions:
+        questions.append(_question_of_order(guessed, called))
+    found |= by_order
+    return MatchByMotion(found, questions)
+
+
+def _question_of_order(missing: Sequence[VesselChannel], ordered: Sequence[Classification]) -> str:
+    """A line that asks which signal is which drive, where neither name nor motion shows it."""
+    signals = ", ".join(_without_control_characters(g.name) for g in ordered)
+    names = " and ".join(drive.name for drive in missing)
+    verb = "is" if len(missing) == 1 else "are"
+    return f"# CHECK: which of {signals} {verb} {names}? Neither names nor the motion show it"
+
+
+def _are_two_sides(missing: Sequence[VesselChannel], ordered: Sequence[Classification]) -> bool:
+    """Whether two channels of the two sides are left for two signals; their difference decides."""
+    sides = [side_from_tokens(frozenset(tokenize_name(d.name))) for d in missing]
+    return len(ordered) == 2 and sorted(sides) == list(SIDED)
+
+
+def _may_be(drive: VesselChannel, g: Classification) -> bool:
+    return _units_are_compatible(drive, g) or _is_thrust_by_revolutions(drive, g)
+
+
+def _with_unit_of_helm(g: Classification, drive: VesselChannel) -> Classification:
+    """A signal in degrees, if its numbers are the degrees of the range of a channel that steers."""
+    if unit_of(drive.name) != "rad" or g.word or g.signal.unit:
+        return g
+    span = max(abs(drive.low), abs(drive.high))
+    largest = float(np.radians(np.nanmax(np.abs(g.signal.values))))
+    if MIN_HELM_SHARE * span < largest <= HELM_EXCESS * span and span < ALL_AROUND:
+        return replace(g, word="deg")
+    return g
+
+
+def _corrected_by_motion(
+    drives: Sequence[VesselChannel],
+    named: Mapping[str, tuple[Classification, str]],
+    motion: MotionOfLog,
+) -> tuple[dict[str, tuple[Classification, str]], list[str]]:
+    """Signals by number, in another order if the motion contradicts it, and questions."""
+    found = dict(named)
+    group = [d for d in drives if d.name in named and named[d.name][1] == BY_NUMBER]
+    kinds = {d.name: kind_of_drive(d) for d in group}
+    if len(set(kinds.values()) & {TO_STARBOARD, TO_PORT}) < len(SIDED):
+        return found, []
+    match = match_by_motion(group, [named[d.name][0] for d in group], motion)
+    if len(match.found) < len(group):
+        return found, []
+    by_kind: dict[str, list[set[str]]] = {kind: [set(), set()] for kind in kinds.values()}
+    for name, kind in kinds.items():
+        by_kind[kind][0].add(named[name][0].name)
+        by_kind[kind][1].add(match.found[name][0].name)
+    if all(by_number == by_motion for by_number, by_motion in by_kind.values()):
+        return found, []
+    return found | match.found, match.questions
 
 
 def _unassigned(
@@ -696,7 +836,7 @@ def _match_by_order(
     """Signals of channels by order; two sides are exchanged if the turning shows it."""
     why = "; CHECK: the only signal that is left"
     if len(left) > 1:
-        why = "; CHECK: by order only"
+        why = BY_ORDER
     sides = [side_from_tokens(frozenset(tokenize_name(d.name))) for d in missing]
     if len(left) == 2 and sorted(sides) == list(SIDED):
         port = sides.index(SIDED[0])
@@ -743,7 +883,7 @@ def _match_by_number(
         return {}
     found = {}
     for drive, g in zip(drives, ordered[0], strict=True):
-        found[drive.name] = (g, "; CHECK: by number, in the order of the vessel's drives")
+        found[drive.name] = (g, BY_NUMBER)
     return found
 
 
@@ -829,7 +969,7 @@ def _is_thrust_by_revolutions(drive: VesselChannel, g: Classification) -> bool:
 
 def _unit(g: Classification) -> str:
     if g.signal.unit:
-        return g.signal.unit
+        return english_unit(g.signal.unit) or g.signal.unit
     return {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 

@@ -9,6 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.importing.foreign_words import UNKNOWN as LOST_LETTER
+from boatsim.recordings.importing.foreign_words import (
+    english_unit,
+    is_also_course,
+    plain_name,
+    translate_words,
+)
 from boatsim.recordings.importing.log import Log, Signal, median_sampling_rate
 from boatsim.recordings.importing.single_axis import (
     WHY,
@@ -19,6 +26,7 @@ from boatsim.recordings.importing.single_axis import (
 from boatsim.recordings.table import is_command
 
 MIN_SAMPLES = 20
+BRACKETED = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Kurs [°]
 WORDS = {  # unit as formats write it -> unit in expressions; "" is the SI unit
     **dict.fromkeys(("rad", "radian", "radians", "rad/s", "radps"), ""),
     **dict.fromkeys(("m", "metre", "meter", "metres", "meters", "m/s", "mps", "n"), ""),
@@ -157,17 +165,33 @@ class Classification:
 
 
 def tokenize_name(name: str) -> list[str]:
-    """Return the words and numbers of a name in lower case: ATT.DesYaw1 -> att, des, yaw, 1."""
+    """Return the words and numbers of a name in lower case: ATT.DesYaw1 -> att, des, yaw, 1.
+
+    Words of other European languages are translated: Ruderwinkel -> rudder, angle.
+    """
+    words: list[str] = []
+    for word in translate_words(_words_as_written(name)):
+        words += filter(None, word.split(LOST_LETTER))
+    return words
+
+
+def _words_as_written(name: str) -> list[str]:
+    """The words and numbers of a name in lower case, without accents, not translated."""
+    if not name.isascii() and (found := BRACKETED.search(name)):
+        name = f"{name[: found.start()]} {english_unit(found[1]) or found[1]}"
     parted = re.sub(
-        r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name
+        r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", plain_name(name)
     ).lower()
     parted = re.sub(
-        r"\b(rad|deg|m)[_ ]?(?:/|p|per_?)?[_ ]?s(?:ec)?\b", r"\1/s", parted.replace("_", " ")
+        r"\b(rad|deg|grad|m)[_ ]?(?:/|p|per_?)?[_ ]?s(?:ec)?\b", r"\1/s", parted.replace("_", " ")
     )
     words: list[str] = []
-    for token in re.split(r"[^a-z0-9%°/]+", parted):
+    for token in re.split(rf"[^a-z0-9%°/{LOST_LETTER}]+", parted):
+        unit = english_unit(token)
         if token in WORDS:
             words.append(token)
+        elif "/" in token and unit:
+            words.append(unit)
         else:
             words += token.split("/")
     return list(filter(None, words))
@@ -290,6 +314,8 @@ def classify_signal(
         column = column or _of_numbered(name, tokens, log) or _motion(last, tokens, log)
     if column is None or tokens & NOT_MEASURED:
         return None
+    if column == "psi_rad" and may_be_course(name):
+        moves -= 1.0  # another heading is more probable
     word, why = _angle(column, signal, tokens, _unit_word(name, signal))
     if body.turns_over and column in ("phi_rad", "p_radps") and why:
         word = unit_of_tumbling(column, signal.t, signal.values)
@@ -302,6 +328,15 @@ def classify_signal(
         + 2.0 * bool(tokens & {"attitude", "imu", "odom"})
     )
     return Classification(name, signal, column, word, moves + rate + own, why, tokens)
+
+
+def may_be_course(name: str) -> bool:
+    """Return whether the word of a name for a heading may also be a course over ground.
+
+    Args:
+        name: Name of the signal.
+    """
+    return is_also_course(_words_as_written(name))
 
 
 def _is_load(tokens: frozenset[str], body: Body) -> bool:
@@ -351,7 +386,10 @@ def has_stated_unit(name: str, signal: Signal) -> bool:
 def _unit_word(name: str, signal: Signal) -> str:
     """The unit as a word of expressions, by the format, else by the name."""
     if signal.unit:
-        return WORDS.get(signal.unit.lower(), "")
+        word = WORDS.get(signal.unit.lower())
+        if word is None:
+            word = WORDS.get(english_unit(signal.unit), "")
+        return word
     words = tokenize_name(name) or [""]
     if "rpm" in words:
         return "rpm"
@@ -539,7 +577,8 @@ def _angular_rate(end: str, tokens: frozenset[str]) -> str | None:
             return column
     rates = (
         {"rot", "omega"} & {end}
-        or {"turn", "rate"} <= tokens
+        or "turn" in tokens
+        and tokens & SPEEDS
         or end == "r"
         and not tokens - {"r"} - set(WORDS)
     )

@@ -3,13 +3,16 @@
 import csv
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import repeat
 
 from boatsim.recordings.importing.cells import number_of_cell
+from boatsim.recordings.importing.dates import seconds_from_dates
 
 SEPARATORS = ",;\t|"
 BLANK = " "  # any number of blanks between the cells
 SAMPLE = 200  # lines that are compared to find the header
+MIN_FOLLOWING = 5  # lines that show the kinds of the cells
 MIN_TABLE_SHARE = 0.5  # of the sampled lines that have the number of cells of the table
 
 
@@ -59,15 +62,61 @@ def is_row_of_numbers(cells: Sequence[str], separator: str) -> bool:
     return None not in map(number_of_cell, cells, repeat(separator))
 
 
+def is_row_of_table(cells: Sequence[str], following: Sequence[str], separator: str) -> bool:
+    """Return whether the first line of a table with words is a row, so that there is no header.
+
+    Each of its cells is of the kind of those below: a number, a date, or a word that comes again.
+    At least one is a number or a date, and one a word.
+
+    Args:
+        cells: Cells of the first line.
+        following: The next lines.
+        separator: Separator of the table.
+    """
+    kinds = [_kind_of_cell(cell, separator) for cell in cells]
+    if not {"word", "value"} <= set(kinds):
+        return False
+    rows = []
+    for line in following:
+        with suppress(csv.Error):
+            rows.append(cells_of_line(line, separator))
+    same_width = [row for row in rows if len(row) == len(cells)]
+    if len(same_width) < MIN_FOLLOWING or 2 * len(same_width) < len(following):
+        return False
+    for i, kind in enumerate(kinds):
+        below = [row[i] for row in same_width]
+        if kind == "word" and cells[i] not in below:
+            return False
+        if kind == "value":
+            values = [_kind_of_cell(cell, separator) == "value" for cell in below[:MIN_FOLLOWING]]
+            if not any(values):
+                return False
+    return True
+
+
+def _kind_of_cell(cell: str, separator: str) -> str:
+    """Whether a cell is a "value" (number or date), a "word" or "" for an empty one."""
+    if not cell.strip():
+        return ""
+    is_value = number_of_cell(cell, separator) is not None
+    if is_value or seconds_from_dates([cell]) is not None:
+        return "value"
+    return "word"
+
+
 def _width(line: str, separator: str) -> int:
     """Number of cells of a line, without an empty one at its end."""
+    return _widths(line, separator)[0]
+
+
+def _widths(line: str, separator: str) -> tuple[int, int]:
+    """Number of cells of a line without an empty one at its end, and of all cells."""
     try:
         cells = cells_of_line(line.strip("\r\n"), separator)
     except csv.Error:
-        return 0
-    if len(cells) > 1 and not cells[-1].strip():
-        cells.pop()
-    return len(cells)
+        return 0, 0
+    is_open = len(cells) > 1 and not cells[-1].strip()
+    return len(cells) - is_open, len(cells)
 
 
 def _count_numbers(lines: Sequence[str], separator: str) -> int:
@@ -87,5 +136,5 @@ def _count_numbers(lines: Sequence[str], separator: str) -> int:
 
 
 def _share_of_width(lines: Sequence[str], separator: str, width: int) -> float:
-    same = sum(abs(_width(line, separator) - width) == 0 for line in lines)
+    same = sum(width in _widths(line, separator) for line in lines)
     return same / len(lines)

@@ -18,6 +18,7 @@ from boatsim.recordings.importing.signal_classification import (
 EARTH_RADIUS = 6.371e6  # [m] mean radius; 0.3 % is enough to compare speeds
 WINDOW = 1.0  # [s] over which positions are differenced
 MIN_WINDOWS = 20  # of a comparison
+MAX_WINDOWS = 100_000  # of a comparison; a day has fewer, a wrong time makes a log of years
 # A track that extends over this many times its noise is that of a moving vessel
 MIN_EXTENT = 20.0
 # A speed is contradicted if its correlation with that of the track is below the first number, and
@@ -291,7 +292,7 @@ def unit_of_rate(g: Classification, heading: Classification) -> str | None:
     if len(t) < MIN_WINDOWS or len(at) < MIN_WINDOWS:
         return None
     begin, end = max(t[0], at[0]), min(t[-1], at[-1])
-    rows = np.arange(begin, end - WINDOW, 0.5 * WINDOW)
+    rows = np.arange(begin, end - WINDOW, max(0.5 * WINDOW, (end - begin) / MAX_WINDOWS))
     if len(rows) < MIN_WINDOWS:
         return None
     integral = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))

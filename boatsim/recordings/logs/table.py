@@ -4,18 +4,18 @@ import codecs
 import csv
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from itertools import repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.cells import (
     EMPTY_WORDS,
     Cells,
-    column_of_cells,
     number_of_cell,
 )
 from boatsim.recordings.importing.clocks import (
@@ -28,9 +28,7 @@ from boatsim.recordings.importing.clocks import (
 )
 from boatsim.recordings.importing.coarse_times import spread_coarse_times
 from boatsim.recordings.importing.coordinates import (
-    HEMISPHERES,
     degrees_of_degrees_and_minutes,
-    degrees_of_texts,
     kind_of_place,
     places_of_hemispheres,
 )
@@ -43,15 +41,21 @@ from boatsim.recordings.importing.log import (
     Signal,
     damaged_log_error,
 )
-from boatsim.recordings.importing.missing_values import placeholder_rows
+from boatsim.recordings.importing.long_format import SAMPLE, may_be_long
+from boatsim.recordings.importing.long_table import LongTable, signals_of_long_table
+from boatsim.recordings.importing.table_columns import (
+    column_of_texts,
+    unit_by_ending,
+    without_placeholders,
+)
 from boatsim.recordings.importing.table_layout import (
     BLANK,
     cells_of_line,
     header_line,
     is_row_of_numbers,
+    is_row_of_table,
     separator_of,
 )
-from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw_table import check_unique_names, file_error
 
 if TYPE_CHECKING:
@@ -60,7 +64,6 @@ if TYPE_CHECKING:
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
-PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
 MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
 # Share of the rows that may have another number of cells than the header, because a write was cut
 MAX_CUT_ROWS = 0.05
@@ -71,9 +74,12 @@ csv.field_size_limit(1_000_000)
 def read(path: Path) -> Log:
     """Return all columns with numbers, at the times of the time column. Raises BadInput."""
     if path.suffix.lower() in (".parquet", ".pq"):
+        long = _long_parquet(path)
+        if long is not None:
+            return long
         columns, remarks = dict[str, Array](), list[str]()
         for name, values in _parquet(path).items():
-            cells = _without_placeholders(Cells(values))
+            cells = without_placeholders(Cells(values))
             columns[name] = cells.values
             for message, row in cells.remarks:
                 remarks.append(f"{path}: row {row + 1}, column {name}: {message}")
@@ -109,7 +115,7 @@ def _log(
     signals: dict[str, Signal] = {}
     for name, values in columns.items():
         if np.isfinite(values).any():
-            unit = units.get(name, "") or _unit(name)
+            unit = units.get(name, "") or unit_by_ending(name)
             if name == clock:
                 unit = "s"
             signals[name] = Signal(t, values, unit)
@@ -139,28 +145,53 @@ def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tupl
     return times_in_seconds(clock, columns[clock]), ()
 
 
-def _without_placeholders(cells: Cells) -> Cells:
-    """A column in which numbers that stand for missing values are empty, with a remark on each."""
-    values, remarks = cells.values, list(cells.remarks)
-    for number, rows in placeholder_rows(cells.values).items():
-        values = np.where(rows, np.nan, values)
-        count = int(rows.sum())
-        what = "1 cell is" if count == 1 else f"{count} cells are"
-        remarks.append(
-            (
-                f"{what} {number:g}, which stands for a missing value, and left empty",
-                int(np.argmax(rows)),
-            )
-        )
-    return replace(cells, values=values, remarks=tuple(remarks))
+def _long_parquet(path: Path) -> Log | None:
+    """The log of a Parquet file in long format; None for another table."""
+    import pyarrow as pa  # 60 ms, comes with rerun-sdk
+    from pyarrow import parquet
+
+    try:
+        file = parquet.ParquetFile(path)
+        kinds = {field.name: field.type for field in file.schema_arrow}
+        texts = [name for name, kind in kinds.items() if _is_text(pa.types, kind)]
+        if not texts:
+            return None
+        first = next(file.iter_batches(SAMPLE), None)
+        if first is None:
+            return None
+        begin = _texts_of_parquet(pa.Table.from_batches([first]))
+        if not may_be_long(begin, ","):
+            return None
+        MemoryBudget(path).count_values(file.metadata.num_rows * len(kinds), len(kinds))
+        columns = _texts_of_parquet(file.read())
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise damaged_log_error(path, "Parquet", error) from error
+    long = _long_table(path, columns, ",", {})
+    if long is None:
+        return None
+    remarks = [*long.remarks, *(f"row {row + 1}, {message}" for message, row in long.cells)]
+    return Log(path, long.signals, remarks=tuple(f"{path}: {text}" for text in remarks))
 
 
-def _unit(name: str) -> str:
-    """The unit by the end of a name; `yaw_rate_deg_s` is in deg/s."""
-    per = PER_SECOND.search(name.lower())
-    if per:
-        return f"{per[1]}/s"
-    return unit_of(name)
+def _is_text(types: Any, kind: Any) -> bool:
+    """Whether a column has texts, maybe each written once."""
+    if types.is_dictionary(kind):
+        kind = kind.value_type
+    return bool(types.is_string(kind) or types.is_large_string(kind))
+
+
+def _texts_of_parquet(table: "Table") -> dict[str, list[str]]:
+    """Column -> texts (N,) of the columns that are no lists."""
+    import pyarrow as pa
+
+    found: dict[str, list[str]] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        try:
+            cells = column.cast(pa.string()).to_pylist()
+        except pa.ArrowException:
+            continue
+        found[name] = ["" if cell is None else cell for cell in cells]
+    return found
 
 
 def _parquet(path: Path) -> dict[str, Array]:
@@ -208,14 +239,16 @@ class _Header:
 
 def _csv(path: Path) -> Log:
     head = _read_header(path)
-    remarks: tuple[str, ...] = ()
-    lines: list[int] = []
-    columns = _read_fast(path, head)
-    if columns is None:
-        columns, lines, remarks = _read_line_by_line(path, head)
+    table = _read_fast(path, head) or _read_line_by_line(path, head)
+    if may_be_long(table.texts(SAMPLE), head.separator):
+        long = _long_table(path, table.texts(), head.separator, head.units)
+        if long is not None:
+            return _long_log(path, head, table, long)
+    remarks, lines = table.remarks, table.lines
+    columns = table.numbers(head.separator)
     values, dates = dict[str, Array](), list[str]()
     words, units = dict[str, str](), dict(head.units)
-    columns = {name: _without_placeholders(cells) for name, cells in columns.items()}
+    columns = {name: without_placeholders(cells) for name, cells in columns.items()}
     for name, cells in columns.items():
         values[name] = cells.values
         words[name] = cells.word
@@ -280,7 +313,8 @@ def _read_header(path: Path) -> _Header:
     header = _names(cells_of_line(first, separator))
     if len(header) > MAX_SIGNALS:
         raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
-    if is_row_of_numbers(header, separator):
+    below = [line for _, line in lines[1:SAMPLE]]
+    if is_row_of_numbers(header, separator) or is_row_of_table(header, below, separator):
         names = [f"column_{i}" for i in range(1, len(header) + 1)]
         remark = f"{path}: has no header; its columns are called {names[0]} to {names[-1]}"
         return _Header(names, separator, {}, lines[0][0], (*remarks, remark))
@@ -322,8 +356,62 @@ def _names(header: Sequence[str]) -> list[str]:
     return names
 
 
-def _read_fast(path: Path, head: _Header) -> dict[str, Cells] | None:
-    """The columns of a table, read by native code.
+@dataclass(frozen=True)
+class _Texts:
+    """Texts of a table.
+
+    Attributes:
+        columns: Column -> texts (N,), as a column of native code or a sequence.
+        lines: Line of the file of each row, counted from 1; [] if all lines are rows.
+        remarks: Messages about rows that were left out.
+    """
+
+    columns: "Mapping[str, ChunkedArray | Sequence[str]]"
+    lines: list[int] = field(default_factory=list)
+    remarks: tuple[str, ...] = ()
+
+    def numbers(self, separator: str) -> dict[str, Cells]:
+        """Return the numbers of the columns."""
+        found = {}
+        for name, cells in self.columns.items():
+            if isinstance(cells, Sequence):
+                found[name] = column_of_texts(name, cells, separator)
+            else:
+                found[name] = _numbers_of_texts(cells, name, separator)
+        return found
+
+    def texts(self, rows: int | None = None) -> dict[str, Sequence[str]]:
+        """Return the texts of the first rows, or of all."""
+        found: dict[str, Sequence[str]] = {}
+        for name, cells in self.columns.items():
+            begin = cells[:rows]
+            found[name] = begin if isinstance(begin, Sequence) else begin.to_pylist()
+        return found
+
+
+def _long_table(
+    path: Path, columns: Mapping[str, Sequence[str]], separator: str, units: Mapping[str, str]
+) -> LongTable | None:
+    """The signals of a table in long format; None for another table. Raises BadInput."""
+    try:
+        return signals_of_long_table(columns, separator, units)
+    except BadInput as error:
+        raise file_error(path, str(error)) from None
+
+
+def _long_log(path: Path, head: _Header, table: _Texts, long: LongTable) -> Log:
+    """The log of a table in long format, with the lines of its remarks."""
+    remarks = [f"{path}: {text}" for text in long.remarks]
+    lines = table.lines
+    for message, row in long.cells:
+        lines = lines or _lines_of_rows(path, head)
+        remarks.append(f"{path}: row {lines[row]}, {message}")
+    MemoryBudget(path).count_values(0, len(long.signals))
+    return Log(path, long.signals, remarks=(*head.remarks, *table.remarks, *remarks))
+
+
+def _read_fast(path: Path, head: _Header) -> _Texts | None:
+    """The texts of a table, read by native code.
 
     None if some rows differ from the header in length.
     """
@@ -350,10 +438,7 @@ def _read_fast(path: Path, head: _Header) -> dict[str, Cells] | None:
     found = pa.Table.from_batches(batches, pieces.schema)
     if _repeats_header(found, head.columns):
         return None
-    columns = {}
-    for name in head.columns:
-        columns[name] = _numbers_of_texts(found[name], name, head.separator)
-    return columns
+    return _Texts({name: found[name] for name in head.columns})
 
 
 def _repeats_header(found: "Table", header: Sequence[str]) -> bool:
@@ -379,10 +464,10 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
         if _may_separate_thousands(column, separator):
-            return _column(name, column.to_pylist(), separator)
+            return column_of_texts(name, column.to_pylist(), separator)
         return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
     except pa.ArrowException:
-        return _column(name, column.to_pylist(), separator)
+        return column_of_texts(name, column.to_pylist(), separator)
 
 
 def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
@@ -396,23 +481,8 @@ def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
     return bool(compute.all(whole).as_py()) and bool(compute.any(pointed).as_py())
 
 
-def _column(name: str, cells: Sequence[str], separator: str) -> Cells:
-    """Numbers of the text cells of a column; those of a place may have degrees and minutes."""
-    found = column_of_cells(cells, separator)
-    if kind_of_place(name) and found.unit.upper() in HEMISPHERES:
-        sign = HEMISPHERES[found.unit.upper()]
-        return replace(found, values=sign * found.values, unit="")
-    if kind_of_place(name) and not np.isfinite(found.values).any():
-        degrees = degrees_of_texts(cells)
-        if degrees is not None:
-            return Cells(degrees, unit="deg")
-    return found
-
-
-def _read_line_by_line(
-    path: Path, head: _Header
-) -> tuple[dict[str, Cells], list[int], tuple[str, ...]]:
-    """The columns of any other table, the lines of its rows, and remarks.
+def _read_line_by_line(path: Path, head: _Header) -> _Texts:
+    """The texts of any other table, the lines of its rows, and remarks.
 
     Raises BadInput with the line of a mistake.
     """
@@ -430,10 +500,7 @@ def _read_line_by_line(
     if not rows:
         raise file_error(path, "has a header and no rows")
     cells_of = zip(*rows, strict=True)
-    columns: dict[str, Cells] = {}
-    for name, cells in zip(head.columns, cells_of, strict=True):
-        columns[name] = _column(name, cells, head.separator)
-    return columns, numbers, remarks
+    return _Texts(dict(zip(head.columns, cells_of, strict=True)), numbers, remarks)
 
 
 def _text(path: Path, found: bytes) -> str:

@@ -13,7 +13,7 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.log_check import check_files
 from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Recording
-from validation.log_faults import Columns, simulate_log, write
+from validation.log_faults import FAULTS, Columns, simulate_log, write
 
 THRUST = ("thrust_port_N", "thrust_starboard_N")
 STEERING = ("steer_port_rad", "steer_starboard_rad")
@@ -99,3 +99,39 @@ def test_two_drives_with_sides_in_their_names_have_one_exchange() -> None:
     boat = load_vessel("otter")
     assert exchanges_of(boat) == [{frozenset(boat.commands)}]
     assert exchanges_of(replace(boat, effects=())) == [{frozenset(boat.commands)}]
+
+
+MIRRORED = "y and the heading are counted to port"
+
+
+@pytest.mark.parametrize("title", ["thrusters exchanged", "y to port, heading too"])
+@pytest.mark.parametrize("fix", ["gnss", "camera"])
+def test_positions_of_satellites_are_not_mirrored(title: str, fix: str, tmp_path: Path) -> None:
+    """On a boat with two fixed thrusters both faults give the same log."""
+    boat = load_vessel("blueboat")
+    (tmp_path / "recording.toml").write_text(f'[facts]\nposition_fix = "{fix}"\n')
+    log = FAULTS[title].apply(simulate_log(boat, SEED), boat)
+    (entry,) = faults(log, "blueboat", tmp_path)
+    one, other = THRUST
+    exchanged_lines = [f'{one} = "{other}"', f'{other} = "{one}"']
+    alternatives = {each["words"]: each["lines"] for each in entry["alternatives"]}
+    if fix == "gnss":
+        assert entry["name"] == "thrusters_exchanged"
+        assert entry["lines"] == ["[columns]", *exchanged_lines]
+        assert alternatives[MIRRORED] == ['y_m = "-y_m"', 'psi_rad = "-psi_rad"']
+        assert "x east, y north (ENU)" in alternatives
+        assert f"{MIRRORED}, but it is less likely: a satellite receiver" in entry["evidence"]
+    else:
+        assert entry["name"] == "mirrored"
+        assert alternatives[f"{one} and {other} are exchanged"] == exchanged_lines
+        assert "The log does not show which" in entry["evidence"]
+
+
+@pytest.mark.slow
+def test_a_log_that_only_mirroring_explains_is_mirrored_with_satellites_too(
+    log: Columns, tmp_path: Path
+) -> None:
+    boat = load_vessel("trial_boat")
+    (tmp_path / "recording.toml").write_text('[facts]\nposition_fix = "gnss"\n')
+    (entry,) = faults(FAULTS["y to port, heading too"].apply(log, boat), "trial_boat", tmp_path)
+    assert entry["name"] == "mirrored"

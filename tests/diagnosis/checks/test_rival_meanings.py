@@ -3,12 +3,15 @@
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from boatsim.diagnosis.checks.finding import Finding, scaling_corrections
 from boatsim.diagnosis.checks.hypothesis_test import Comparison, Score, _clear_finding
 from boatsim.diagnosis.checks.reinterpretations import Reinterpretation
 from boatsim.diagnosis.config import DEFAULT
+from boatsim.recordings.notes import Notes
+from boatsim.recordings.table import Recording
 
 ROWS = 100
 
@@ -17,7 +20,7 @@ def meaning(name: str, column: str) -> Reinterpretation:
     return Reinterpretation(name, f"{column} is reversed", scaling_corrections([column], -1.0))
 
 
-def finding(agrees: bool = True, **evidence: float) -> Finding | None:
+def finding(agrees: bool = True, fix: str = "", **evidence: float) -> Finding | None:
     """The finding where reversed columns have this evidence, and the log as recorded has 0 nats.
 
     Simulations agree with every reversed column, or with none.
@@ -29,7 +32,8 @@ def finding(agrees: bool = True, **evidence: float) -> Finding | None:
         problem=SimpleNamespace(program=program),
         simulations_agree=lambda recordings, changes: agrees,
     )
-    recordings: Any = [range(ROWS)]
+    notes = Notes(facts={"position_fix": fix} if fix else {})
+    recordings = [Recording("run", np.arange(float(ROWS)), {"psi_rad": np.zeros(ROWS)}, notes)]
     return _clear_finding(scored, Score(0.0, 0.5), recordings, comparison)
 
 
@@ -53,6 +57,24 @@ def test_rivals_are_alternatives(
     ]
     assert words in found.evidence
     assert bool(others) == ("Another fault" in found.evidence or "another fault" in found.evidence)
+
+
+@pytest.mark.parametrize(
+    ("fix", "y_evidence", "chosen", "words"),
+    [
+        ("gnss", 100.0, "r", "it is less likely: a satellite receiver measured the positions"),
+        ("camera", 100.0, "y_m", "The log does not show which"),
+        ("", 100.0, "y_m", "The log does not show which"),
+        ("gnss", 110.0, "y_m", "almost as well: r is reversed"),  # the log shows it
+    ],
+)
+def test_positions_of_satellites_decide_between_equally_good_ones(
+    fix: str, y_evidence: float, chosen: str, words: str
+) -> None:
+    found = finding(fix=fix, y_m=y_evidence, r=100.0)
+    assert found is not None and found.name == chosen
+    assert words in found.evidence
+    assert len(found.alternatives) == 1
 
 
 def test_a_small_gain_over_the_log_as_recorded_is_no_finding() -> None:
