@@ -14,6 +14,7 @@ from boatsim.physics.content import vessel_reference
 from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.vessel import Vessel
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.convert import (
     convert_log,
     position_fix_type,
@@ -22,9 +23,10 @@ from boatsim.recordings.importing.convert import (
 )
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
+from boatsim.recordings.importing.signal_listing import signal_table
 from boatsim.recordings.importing.voltages import voltage_lines
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import read, write_csv

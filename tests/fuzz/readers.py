@@ -21,7 +21,8 @@ from boatsim.recordings import expression, table
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import propose_map, signal_table
+from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.importing.signal_listing import signal_table
 from boatsim.simulate import scenario, world
 from boatsim.simulate.cases import read_scenario
 from boatsim.sweeps.axes import parse_axis

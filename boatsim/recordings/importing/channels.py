@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+SIDED = ("port", "starboard")  # sides of two drives that turn the vessel by their difference
+
 
 @dataclass(frozen=True)
 class VesselChannel:

@@ -10,8 +10,9 @@ from boatsim.diagnosis.checks.order_signs import _response_evidence, restore_ord
 from boatsim.diagnosis.loading import open_recording_parts
 from boatsim.diagnosis.log_check import check_files
 from boatsim.physics.vessel import load_vessel
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import scenario
 from boatsim.simulate.run import run

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.signal_classification import classify_signal
 
 T = np.linspace(0.0, 60.0, 600)

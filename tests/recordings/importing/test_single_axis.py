@@ -8,8 +8,9 @@ import pytest
 from boatsim.diagnosis.log_check import check_files
 from boatsim.physics import vessel
 from boatsim.recordings import units
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.table import read
 
 T = np.arange(0.0, 20.0, 0.005)

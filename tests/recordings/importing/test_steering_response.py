@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.mapping import parse_map
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
 
 T = np.arange(0.0, 120.0, 0.1)
 OUTBOARD = [

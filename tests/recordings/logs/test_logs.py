@@ -23,11 +23,13 @@ from pyarrow import parquet
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import load_vessel
+from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import known_suffixes, open_log
 from boatsim.recordings.importing.mapping import parse_map, read_map
-from boatsim.recordings.importing.mapping_proposal import VesselChannel, propose_map, signal_table
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.signal_classification import classify_signals
+from boatsim.recordings.importing.signal_listing import signal_table
 from boatsim.recordings.table import read
 
 LOGS = Path(__file__).parents[2] / "data" / "logs"
