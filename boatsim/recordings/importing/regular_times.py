@@ -161,7 +161,9 @@ def _mean_delay(t: Array, delay: Array) -> Array:
 def _roughness(t: Array, track: Array) -> Array:
     """Changes of the velocity from one step to the next [m/s]: median, and percentile 95.
 
-    The latter shows samples that are moved to a wrong turn of the sensor.
+    The latter shows samples that are moved to a wrong turn of the sensor. Both are nan or infinite
+    if a step of time is so short that a velocity exceeds the largest number.
     """
-    velocity = np.diff(track) / np.diff(t)
-    return np.asarray(np.percentile(np.abs(np.diff(velocity)), [50.0, 95.0]))
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        velocity = np.diff(track) / np.diff(t)
+        return np.asarray(np.percentile(np.abs(np.diff(velocity)), [50.0, 95.0]))

@@ -102,3 +102,14 @@ def test_samples_at_irregular_times_are_left_as_they_are_where_their_track_is_sm
     true = 1.7e9 + np.cumsum(0.05 + 0.3 * rng.random(600))
     read = true + 0.1 * rng.random(600)
     assert regular_times(np.sort(read), track_at(true - true[0])) is None
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("step", [1e-3, 1e-310])
+def test_a_velocity_beyond_the_largest_number_gives_no_warning(step):
+    true, read = polled(0.109)
+    track, t = track_at(true - true[0]), read - read[0]
+    t[1] = step  # [s] 0.3 m / 1e-310 s exceeds 1.8e308 m/s
+    found, period = regular_times(t, track)
+    assert period == pytest.approx(PERIOD, rel=1e-3)
+    assert np.std((found - (true - true[0]))[2:]) < 0.35 * np.std((t - (true - true[0]))[2:])
