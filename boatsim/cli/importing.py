@@ -15,15 +15,15 @@ from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.channels import VesselChannel
-from boatsim.recordings.importing.convert import (
-    convert_log,
+from boatsim.recordings.importing.convert import convert_log
+from boatsim.recordings.importing.log import Log
+from boatsim.recordings.importing.mapping import read_map
+from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.importing.recording_notes import (
     position_fix_type,
     recording_notes_text,
     use_entry_line,
 )
-from boatsim.recordings.importing.log import Log
-from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
 from boatsim.recordings.importing.signal_listing import signal_table

@@ -17,7 +17,7 @@ from boatsim.diagnosis.log_check import check_files
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.importing.convert import recording_notes_text
+from boatsim.recordings.importing.recording_notes import recording_notes_text
 from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch
 from validation.log_faults import Columns, write

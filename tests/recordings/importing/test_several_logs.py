@@ -10,9 +10,10 @@ from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.convert import convert_log, recording_notes_text
+from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.importing.recording_notes import recording_notes_text
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.table import read
 

@@ -1,0 +1,182 @@
+"""Removal of samples that are no measurements, and of delays of positions."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array
+from boatsim.physics.signals import POSE, RATES
+from boatsim.recordings.importing.conversion_state import ConversionState
+from boatsim.recordings.importing.log import HUGE
+from boatsim.recordings.importing.queued_messages import Queue, late_samples, queued_positions
+from boatsim.recordings.importing.regular_times import regular_times
+from boatsim.recordings.importing.resample import Samples
+from boatsim.recordings.importing.track import constant_heading_fault
+from boatsim.recordings.repeated_values import repeated_rows, stale_rows
+from boatsim.recordings.table import FEWEST_ROWS
+
+# Columns of one fix
+PLACE = ("x_m", "y_m")
+TOGETHER = (PLACE, ("psi_rad",))
+# A track begins with positions that were not measured if it leaps from 0 by this many usual steps
+MIN_LEAP, USUAL_STEP_PERCENTILE = 10.0, 99.0
+
+
+def check_values(work: ConversionState, name: str, given: Samples) -> Samples:
+    """Return the samples of a column.
+
+    Args:
+        work: State of the conversion.
+        name: Name of the column.
+        given: The samples.
+
+    Raises:
+        BadInput: There are none, or one is too large for a measurement.
+    """
+    if not len(given.t):
+        raise BadInput(f"{work.file}: columns.{name} has no number in {work.log.path.name}")
+    largest = float(np.abs(given.values).max())
+    if largest >= HUGE:
+        raise BadInput(
+            f"{work.file}: columns.{name} = {largest:.3g}; no measurement is as large as {HUGE:g}"
+        )
+    return given
+
+
+def check_heading(work: ConversionState) -> None:
+    """Refuse a heading that the program wrote although no sensor sent one.
+
+    Args:
+        work: State of the conversion.
+
+    Raises:
+        BadInput: The heading is constant although the course changes.
+    """
+    there = [work.columns.get(name) for name in ("x_m", "y_m", "psi_rad")]
+    x, y, psi = there
+    if x is None or y is None or psi is None or len(x.given.t) != len(y.given.t):
+        return
+    fault = constant_heading_fault(x.given.t, x.given.values, y.given.values, psi.given.values)
+    if fault:
+        raise BadInput(f"{work.file}: columns.psi_rad {fault}")
+
+
+def drop_unfixed(work: ConversionState) -> None:
+    """Remove positions of exactly 0 and 0 before the first fix, from which the track leaps away."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return
+    track = x.given.values + 1j * y.given.values
+    moved = track != 0.0
+    first = int(np.argmax(moved))
+    if first == 0 or len(track) - first < FEWEST_ROWS:
+        return
+    usual = float(np.percentile(np.abs(np.diff(track[first:])), USUAL_STEP_PERCENTILE))
+    if abs(track[first]) < MIN_LEAP * usual:
+        return
+    work.remark(
+        f"x_m, y_m: omitted {first} positions of 0, 0 before the first fix, which is "
+        f"{abs(track[first]):.3g} m away"
+    )
+    for name, column in (("x_m", x), ("y_m", y)):
+        kept = Samples(column.given.t[first:], column.given.values[first:])
+        work.columns[name] = replace(column, given=kept)
+
+
+def drop_repeats(work: ConversionState) -> None:
+    """Remove fixes that the logger repeated, for they are not measurements."""
+    for names in TOGETHER:
+        there = [work.columns[n] for n in names if n in work.columns]
+        if len(there) < len(names) or any(len(c.given.t) != len(there[0].given.t) for c in there):
+            continue
+        repeated = repeated_rows(np.column_stack([c.given.values for c in there]))
+        if repeated.any():
+            work.remark(
+                f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat "
+                "the one before and are "
+                "not measurements; they are left empty"
+            )
+            for name, c in zip(names, there, strict=True):
+                work.columns[name] = replace(
+                    c, given=Samples(c.given.t[~repeated], c.given.values[~repeated])
+                )
+
+
+def position_queues(work: ConversionState) -> list[Queue]:
+    """Return the intervals in which positions were read that had queued during a stall."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return []
+    return list(queued_positions(x.given.t, x.given.values, y.given.values))
+
+
+def drop_queued(work: ConversionState, queues: Sequence[Queue], names: Sequence[str]) -> None:
+    """Remove samples of some poses and rates that had queued with the positions.
+
+    Args:
+        work: State of the conversion.
+        queues: Intervals in which queued positions were read.
+        names: Columns of the poses and rates.
+    """
+    for queue in queues:
+        dropped = []
+        for name in names:
+            column = work.columns.get(name)
+            if column is None or column.held:
+                continue
+            t, values = column.given.t, column.given.values
+            late = late_samples(t, values, queue)
+            if late.any() and not late.all():
+                work.columns[name] = replace(column, given=Samples(t[~late], values[~late]))
+                dropped.append(name)
+        if dropped:
+            work.remark(
+                f"{', '.join(dropped)}: the samples from {queue.begin - work.begin:.4g} s to "
+                f"{queue.end - work.begin:.4g} s after the beginning had queued since "
+                f"{queue.last - work.begin:.4g} s; the vessel stands still over the gap and then "
+                f"moves too fast; they are omitted"
+            )
+
+
+def regularize_positions(work: ConversionState) -> None:
+    """Move positions to the times at which their sensor measured, if they were read late."""
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
+        return
+    found = regular_times(x.given.t, x.given.values + 1j * y.given.values)
+    if found is None:
+        return
+    t, period = found
+    shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
+    work.remark(
+        f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it late; the "
+        f"samples are moved to the times of that rhythm, by {shift:.2g} s rms"
+    )
+    for name, column in (("x_m", x), ("y_m", y)):
+        work.columns[name] = replace(column, given=Samples(t, column.given.values))
+
+
+def drop_stale(work: ConversionState) -> None:
+    """Remove angles and rates that were logged again because no new message had arrived."""
+    for name in (*POSE, *RATES):
+        column = work.columns.get(name)
+        if column is None or column.held:
+            continue
+        given = column.given
+        stale = stale_rows(given.values)
+        if not stale.any():
+            continue
+        longest = _longest_stale(given.t, stale)
+        work.remark(
+            f"{name}: {int(stale.sum())} of {len(stale)} samples repeat the one before exactly, "
+            f"for up to {longest:.3g} s, because no new message had arrived; they are left empty"
+        )
+        fresh = Samples(given.t[~stale], given.values[~stale])
+        work.columns[name] = replace(column, given=fresh)
+
+
+def _longest_stale(t: Array, stale: "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]") -> float:
+    """Longest time [s] from a new sample to the next one."""
+    return float(np.diff(t[~stale]).max(initial=0.0))
