@@ -9,9 +9,8 @@ from boatsim.recordings.importing.signal_classification import (
     Body,
     Classification,
     classify_signals,
-    side_from_tokens,
-    tokenize_name,
 )
+from boatsim.recordings.importing.signal_words import side_from_tokens, tokenize_name
 from boatsim.recordings.table import Recording
 
 POSE_AXES = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw"}

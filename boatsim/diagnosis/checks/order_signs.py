@@ -12,7 +12,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.importing.signal_classification import effort_of_name
+from boatsim.recordings.importing.drive_names import effort_of_name
 from boatsim.recordings.importing.track import (
     WINDOW,
     rows_one_window_apart,

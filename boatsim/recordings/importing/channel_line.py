@@ -12,9 +12,11 @@ from boatsim.recordings.importing.channel_units import (
     unit_of_signal,
 )
 from boatsim.recordings.importing.channels import VesselChannel
+from boatsim.recordings.importing.drive_names import PULSE
 from boatsim.recordings.importing.effort_allocation import USUAL_PULSE
-from boatsim.recordings.importing.signal_classification import PULSE, Classification, tokenize_name
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import expression_of, printable_name, sampling_rate
+from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.single_axis import is_load_of_channel
 from boatsim.recordings.importing.turning import MIN_CORRELATION
 from boatsim.recordings.notes import unit_of

@@ -6,7 +6,8 @@ import numpy as np
 
 from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.foreign_words import english_unit
-from boatsim.recordings.importing.signal_classification import HELM, Classification, tokenize_name
+from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.signal_words import HELM, tokenize_name
 from boatsim.recordings.notes import unit_of
 
 ALL_AROUND = 3.1  # [rad] to each side: a thruster that turns around, whose angle may be counted on

@@ -15,12 +15,9 @@ from boatsim.recordings.importing.channel_units import (
 from boatsim.recordings.importing.channels import SIDED, VesselChannel
 from boatsim.recordings.importing.channels_by_name import NOTE_BY_NUMBER, unassigned
 from boatsim.recordings.importing.drive_evidence import MotionOfLog
-from boatsim.recordings.importing.signal_classification import (
-    Classification,
-    side_from_tokens,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import printable_name
+from boatsim.recordings.importing.signal_words import side_from_tokens, tokenize_name
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 from boatsim.recordings.importing.unnamed_drives import (
     MAX_OUTPUTS,

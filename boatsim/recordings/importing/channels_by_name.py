@@ -6,14 +6,9 @@ from itertools import filterfalse, repeat
 
 from boatsim.recordings.importing.channel_units import is_steering_channel, units_are_compatible
 from boatsim.recordings.importing.channels import VesselChannel
-from boatsim.recordings.importing.signal_classification import (
-    HELM,
-    ORDERED,
-    Classification,
-    side_from_tokens,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import is_constant
+from boatsim.recordings.importing.signal_words import HELM, ORDERED, side_from_tokens, tokenize_name
 from boatsim.recordings.importing.single_axis import is_load_of_channel
 from boatsim.recordings.importing.turning import Turning
 

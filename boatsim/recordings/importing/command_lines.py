@@ -20,13 +20,9 @@ from boatsim.recordings.importing.effort_allocation import (
     mixing_lines,
 )
 from boatsim.recordings.importing.revolution_unit import RevolutionUnit
-from boatsim.recordings.importing.signal_classification import (
-    HELM,
-    Classification,
-    side_from_tokens,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import is_constant, unique_names
+from boatsim.recordings.importing.signal_words import HELM, side_from_tokens, tokenize_name
 from boatsim.recordings.importing.turning import Turning
 
 

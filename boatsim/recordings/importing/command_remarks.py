@@ -8,12 +8,9 @@ from boatsim.files import toml_value
 from boatsim.recordings.importing.channel_line import channel_line
 from boatsim.recordings.importing.channel_units import is_thrust_by_revolutions
 from boatsim.recordings.importing.channels import SIDED, VesselChannel
-from boatsim.recordings.importing.signal_classification import (
-    Classification,
-    side_from_tokens,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import expression_of, printable_name
+from boatsim.recordings.importing.signal_words import side_from_tokens, tokenize_name
 from boatsim.recordings.importing.track import values_in_si
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning, held_values
 from boatsim.recordings.order_signs import (

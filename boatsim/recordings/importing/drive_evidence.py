@@ -13,7 +13,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.signal_classification import Classification, has_opposite_sense
+from boatsim.recordings.importing.motion_names import has_opposite_sense
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.track import Track, values_in_si
 from boatsim.recordings.importing.turning import Turning, held_values
 

@@ -9,12 +9,10 @@ import numpy as np
 
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.channels import VesselChannel
+from boatsim.recordings.importing.drive_names import PULSE
 from boatsim.recordings.importing.log import median_sampling_rate
-from boatsim.recordings.importing.signal_classification import (
-    PULSE,
-    Classification,
-    side_from_tokens,
-)
+from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.signal_words import side_from_tokens
 from boatsim.recordings.importing.turning import MIN_CORRELATION, Turning
 
 EFFORTS = ("effort_x", "effort_n")  # force ahead and moment to starboard

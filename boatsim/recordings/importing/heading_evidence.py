@@ -10,13 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.signal_classification import (
-    CLOCKWISE,
-    COUNTERCLOCKWISE,
-    FROM_EAST,
-    Classification,
-    has_stated_unit,
-)
+from boatsim.recordings.importing.motion_names import CLOCKWISE, COUNTERCLOCKWISE, FROM_EAST
+from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.signal_units import has_stated_unit
 from boatsim.recordings.importing.track import MAX_WINDOWS, MIN_WINDOWS, WINDOW, Track, values_in_si
 
 # Resultant length of the differences between course and heading, 1 for a constant difference: from

@@ -14,13 +14,10 @@ import numpy as np
 from boatsim.recordings.importing.cells import NUMBER_AND_UNIT, number_of_cell
 from boatsim.recordings.importing.clocks import is_called_a_time
 from boatsim.recordings.importing.dates import seconds_from_dates
+from boatsim.recordings.importing.drive_names import OUTPUTS
 from boatsim.recordings.importing.log import MAX_SIGNALS
-from boatsim.recordings.importing.signal_classification import (
-    MOTIONS,
-    OUTPUTS,
-    POSE_WORDS,
-    tokenize_name,
-)
+from boatsim.recordings.importing.motion_names import MOTIONS, POSE_WORDS
+from boatsim.recordings.importing.signal_words import tokenize_name
 
 # Words of the column with the names of the signals, the most specific first: where a table has a
 # device and a quantity, the quantity is the name

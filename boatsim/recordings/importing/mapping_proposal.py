@@ -22,9 +22,9 @@ from boatsim.recordings.importing.signal_classification import (
     Body,
     Classification,
     classify_signals,
-    tokenize_name,
 )
 from boatsim.recordings.importing.signal_text import expression_of, printable_name
+from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.single_axis import names_load
 from boatsim.recordings.importing.time_lines import begin_lines, rate_lines, time_lines
 from boatsim.recordings.importing.track import reason_poses_unusable, track_of

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.coordinates import kind_of_place
 from boatsim.recordings.importing.log import median_sampling_rate
-from boatsim.recordings.importing.signal_classification import tokenize_name
+from boatsim.recordings.importing.signal_words import tokenize_name
 
 # Signals whose samples lie nearer to each other than this share of their step are of one message;
 # those of a position may be in two messages

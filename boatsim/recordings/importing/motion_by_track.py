@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from boatsim.physics.signals import RATES
-from boatsim.recordings.importing.signal_classification import Classification, has_stated_unit
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import printable_name
+from boatsim.recordings.importing.signal_units import has_stated_unit
 from boatsim.recordings.importing.track import Track, reason_not_measured, speed_unit, unit_of_rate
 
 BY_ITS_RANGE = "by its range"  # end of the note on a unit that the range only suggests

@@ -14,12 +14,9 @@ from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.heading_evidence import heading_by_course, rate_by_heading
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.signal_classification import (
-    ANGLES,
-    Classification,
-    has_stated_unit,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import ANGLES, Classification
+from boatsim.recordings.importing.signal_units import has_stated_unit
+from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.track import track_of
 
 NORTH, EAST = "n", "e"  # names of two columns that may be a position

@@ -6,12 +6,8 @@ import numpy as np
 
 from boatsim.files import toml_value
 from boatsim.recordings.importing.log import Log
-from boatsim.recordings.importing.signal_classification import (
-    FROM_EAST,
-    Classification,
-    has_opposite_sense,
-    may_be_course,
-)
+from boatsim.recordings.importing.motion_names import FROM_EAST, has_opposite_sense, may_be_course
+from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import (
     expression_of,
     is_constant,

@@ -9,11 +9,8 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, parse
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.signal_classification import (
-    NOT_MEASURED,
-    Classification,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import NOT_MEASURED, Classification
+from boatsim.recordings.importing.signal_words import tokenize_name
 
 EARTH_RADIUS = 6.371e6  # [m] mean radius; 0.3 % is enough to compare speeds
 WINDOW = 1.0  # [s] over which positions are differenced

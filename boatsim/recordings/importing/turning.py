@@ -9,10 +9,8 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import parse
-from boatsim.recordings.importing.signal_classification import (
-    Classification,
-    has_opposite_sense,
-)
+from boatsim.recordings.importing.motion_names import has_opposite_sense
+from boatsim.recordings.importing.signal_classification import Classification
 
 TIME_DIGITS = 6  # decimals of a time [s]; two samples in one microsecond are one
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers

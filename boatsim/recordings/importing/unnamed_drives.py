@@ -13,14 +13,8 @@ from boatsim.recordings.importing.drive_evidence import (
     without_copies,
 )
 from boatsim.recordings.importing.log import Log
-from boatsim.recordings.importing.signal_classification import (
-    HELM,
-    MIN_SAMPLES,
-    WORDS,
-    Classification,
-    side_from_tokens,
-    tokenize_name,
-)
+from boatsim.recordings.importing.signal_classification import MIN_SAMPLES, Classification
+from boatsim.recordings.importing.signal_words import HELM, WORDS, side_from_tokens, tokenize_name
 from boatsim.recordings.notes import unit_of
 
 # Words before the number of an output of a controller

@@ -4,7 +4,7 @@ import numpy as np
 
 from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.log import Log
-from boatsim.recordings.importing.signal_classification import tokenize_name
+from boatsim.recordings.importing.signal_words import tokenize_name
 
 # words in the name of a voltage
 WORDS = {"voltage", "volt", "volts", "vbat", "vbatt", "vbus", "vsupply"}

@@ -12,7 +12,8 @@ from boatsim.recordings.importing.foreign_words import MEANINGS, english_unit, p
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
-from boatsim.recordings.importing.signal_classification import classify_signal, tokenize_name
+from boatsim.recordings.importing.signal_classification import classify_signal
+from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.logs.table import read
 from tests.recordings.importing.test_owners_tables import check_motion, columns_of_run
 from tests.recordings.importing.test_proposal_by_motion import DOF, DRIVES, SPEED_AT_80
