@@ -97,6 +97,9 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     if not tested_any_candidate(answer):
         return _none_tested(answer)
     statements = _effects(answer, words or {})
+    doubtful_formula = _has_only_unconfirmed_formulas(answer)
+    if doubtful_formula:
+        statements += _confirmed_possible(answer)
     statements += _formulas(answer, bool(answer["effects"]))
     refined = _refined_numbers(answer)
     if not statements and refined:
@@ -110,9 +113,20 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
         if main := main_refinement(answer):
             statement += f": {main}" if one else f", above all {main}"
         statements.append(statement)
-    statements += _confirmed_possible(answer)
+    if not doubtful_formula:
+        statements += _confirmed_possible(answer)
     statements += _added(answer)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
+
+
+def _has_only_unconfirmed_formulas(answer: Answer) -> bool:
+    """Return whether formulas that held-out recordings do not confirm are all that is stated.
+
+    The answer then begins with the missing force, and with what held-out recordings confirm.
+    """
+    if answer["effects"] or not answer["described"]:
+        return False
+    return not any(law["carries_over"] for law in answer["described"])
 
 
 def _confirmed_possible(answer: Answer) -> list[str]:
@@ -180,6 +194,8 @@ def _none_tested(answer: Answer) -> str:
 def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
     """Return statements on an unknown cause, on missing physics and on errors of measurement."""
     statements = []
+    if _has_only_unconfirmed_formulas(answer):
+        return [f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"]
     if answer["unknown"].get("stand_ins") and not answer["described"]:
         statements.append(_stand_ins(answer))
     elif sentence := held_out_only_statement(answer):
@@ -318,15 +334,18 @@ def count_in_words(count: int, noun: str) -> str:
 
 
 def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
-    """Return statements on the formulas: those that generalize first, the others as a count."""
+    """Return statements on the formulas: those that generalize first, the others as a count.
+
+    Formulas that do not generalize are stated if there is nothing else.
+    """
     general, others = [], []
     for law in answer["described"]:
         if law["carries_over"]:
             general.append(f"the model lacks {law['statement']}")
         else:
             others.append(law["statement"])
-    if not (general or effects_precede):
-        return [f"the model lacks {other}" for other in others[:MOST_NUMBERS]]
+    if _has_only_unconfirmed_formulas(answer):
+        return [f"the fitted recordings alone show {other}" for other in others[:MOST_NUMBERS]]
     statements = general[:MOST_NUMBERS]
     if len(others) == 1:
         statements.append(f"one further force remains: {others[0]}")

@@ -637,7 +637,8 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
         (
             [],
             [EVENT, EVENT],
-            "The model lacks a push at 3 s of run_1. The model lacks a push at 3 s of run_1.",
+            "A force is missing that no candidate effect explains. The fitted recordings alone show a "
+            "push at 3 s of run_1. The fitted recordings alone show a push at 3 s of run_1.",
         ),
         (
             [DAMPED],
@@ -668,6 +669,24 @@ def test_effects_come_before_formulas_and_events_are_counted(effects, described,
         "described": described,
     }
     assert verdict_sentences(answer, MEANT) == text
+
+
+def test_what_held_out_recordings_confirm_comes_before_a_formula_that_they_do_not() -> None:
+    possible = {"words": "waves push", "in_patch": True, "confirmed": True}
+    answer = {
+        "verdict": "described",
+        "effects": [],
+        "where": {"axes": {}},
+        "candidates": [{"name": "wind"}],
+        "unknown": {"flag": True, "rest": {"sway": {"rms": 0.5, "sd": 0.1, "unit": "N"}}},
+        "described": [EVENT],
+        "also_possible": [possible, possible | {"words": "no", "confirmed": False}],
+    }
+    assert verdict_sentences(answer, MEANT) == (
+        "A force is missing that no candidate effect explains (0.50 N rms in sway). The corrected "
+        "vessel contains “waves push”: held-out recordings confirm it, but it may stand in for "
+        "another cause. The fitted recordings alone show a push at 3 s of run_1."
+    )
 
 
 @pytest.mark.parametrize(
