@@ -33,7 +33,7 @@ def add_balanced_forces(
     """Add a spring to the ground and the force that it balances, where the recordings require both.
 
     Two criteria must be met. By the evidence of the Kalman filter the pair gains twice what a
-    single effect needs, and each effect of the pair, besides the other one, what it needs. That
+    single effect needs, and each effect of the pair, added to the other one, what it needs. That
     evidence may be small relative to what the other effects explain, so that the pair could only
     correct the shape of their laws (`select.slight_share`). Therefore free runs over the fitted and
     over the held-out recordings must be more probable with the pair, too, and more so than with
@@ -92,7 +92,7 @@ def is_spring_to_ground(problem: Problem, name: str) -> bool:
 
 
 def _is_force(effect: Effect) -> bool:
-    """Whether an effect is a deterministic force with a law of its own."""
+    """Whether an effect is a deterministic force that is no placeholder of a formula."""
     kind = type(effect)
     return isinstance(effect, Force) and not (kind.random or kind.described)
 

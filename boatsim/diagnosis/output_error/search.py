@@ -139,7 +139,7 @@ class OutputErrorSearch:
         are then fitted in full. They start from several sizes of the first effect, because the
         frequency of an oscillation depends on the size of a spring, so that free runs have several
         maxima. A pair may explain just the runs that had unusually large errors
-        and little weight without it. Therefore each fit is repeated with the weights of its own
+        and little weight without it. Therefore each fit is repeated with the weights of its
         errors, and the fits are compared by Student's t distribution itself.
 
         Args:
@@ -187,7 +187,7 @@ class OutputErrorSearch:
         return found
 
     def _reweighted_fit(self, start: Fit) -> Fit:
-        """Fit a vessel, and again with the weights of its own errors, in the same units."""
+        """Fit a vessel, and again with the weights of its errors, in the same units."""
         found = self._fitted(start).model
         own = self._errors_of(found)
         errors = replace(self.errors, weights=own.weights)

@@ -36,9 +36,10 @@ def fit_to_simulations(
 
     A Kalman filter ascribes such a force to a disturbance, so that it finds coefficients and
     effects which explain single steps, but may simulate badly. Parameters of effects that are
-    stated as causes keep their values, unless free runs found them; an effect that simulations contradict is only possible.
-    Candidates are added that make simulations better, as a description. Each vessel is replaced
-    only if it predicts held-out recordings clearly better.
+    stated as causes keep their values, unless free runs found these effects; an effect that
+    simulations contradict is only possible. Candidates are added that make simulations better,
+    as a description. Each vessel is replaced only if it predicts held-out recordings clearly
+    better.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.

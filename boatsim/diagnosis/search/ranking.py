@@ -195,7 +195,7 @@ def with_further_effects(
     named: tuple[IdentifiedEffect, ...],
     without: Mapping[str, Fit],
 ) -> Ranking:
-    """Return a ranking with further deterministic effects, and what remains beside them.
+    """Return a ranking with further deterministic effects and what these leave unexplained.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
