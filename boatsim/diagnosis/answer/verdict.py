@@ -99,6 +99,7 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     statements = _effects(answer, words or {})
     doubtful_formula = _has_only_unconfirmed_formulas(answer)
     if doubtful_formula:
+        statements += _balanced_effects(answer, words or {})
         statements += _confirmed_possible(answer)
     statements += _formulas(answer, bool(answer["effects"]))
     refined = _refined_numbers(answer)
@@ -114,6 +115,7 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
             statement += f": {main}" if one else f", above all {main}"
         statements.append(statement)
     if not doubtful_formula:
+        statements += _balanced_effects(answer, words or {})
         statements += _confirmed_possible(answer)
     statements += _added(answer)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
@@ -138,7 +140,8 @@ def _confirmed_possible(answer: Answer) -> list[str]:
         return []
     found = []
     for entry in answer.get("also_possible", []):
-        if entry.get("in_patch") and entry.get("confirmed"):
+        balanced = entry.get("together_with")
+        if entry.get("in_patch") and entry.get("confirmed") and not balanced:
             found.append(f"“{effect_description(entry['words'])}”")
     if not found:
         return []
@@ -146,6 +149,32 @@ def _confirmed_possible(answer: Answer) -> list[str]:
     if len(found) > 1:
         reason = "held-out recordings confirm them, but they may stand in for other causes"
     return [f"the corrected vessel contains {join_words(found[:MOST_NUMBERS])}: {reason}"]
+
+
+def _balanced_effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
+    """Return the statement on two possible effects that balance each other in simulations.
+
+    The held-out recordings confirm both.
+    """
+    found = []
+    for entry in answer.get("also_possible", []):
+        if entry.get("together_with") and entry.get("in_patch") and entry.get("confirmed"):
+            effect: EffectEntry = {
+                "name": entry["name"],
+                "kind": "physics",
+                "probability": entry["probability"],
+                "gain_nats": entry["gain_nats"],
+                "words": entry["words"],
+                "tied_with": [],
+                "parameters": entry.get("parameters", {}),
+            }
+            found.append(_clause(effect, words))
+    if len(found) < 2:
+        return []
+    return [
+        f"simulations require two effects together: {_clauses(found)}; held-out recordings confirm "
+        "them, but they may stand in for other causes"
+    ]
 
 
 def _added(answer: Answer) -> list[str]:
