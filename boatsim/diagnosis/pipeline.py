@@ -49,6 +49,7 @@ from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
+from boatsim.diagnosis.output_error.balanced_forces import add_balanced_forces
 from boatsim.diagnosis.output_error.stage import fit_to_simulations
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
@@ -250,6 +251,8 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
+    report("looking for forces that balance each other", SELECTING[1])
+    selection = add_forces_that_balance(question, selection)
     decision = decide_causes(question, selection)
     report_last = report_part_of(report, SELECTING[1], SELECTING[1])
     loaded, question, decision = try_last_candidates(loaded, question, decision, report_last)
@@ -514,7 +517,8 @@ def try_last_candidates(
         gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
     if gain < config.select.last_gain:
         return loaded, question, decision
-    other = decide_causes(again, select_candidates(again, base, wider, report))
+    selection = select_candidates(again, base, wider, report)
+    other = decide_causes(again, add_forces_that_balance(again, selection))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:
         return wider, again, other
@@ -542,6 +546,18 @@ def keep_undetermined_coefficients(question: Question, decision: Decision) -> De
         return decision
     best = fix_undetermined_coefficients(decision.problem, ranking.best, question.held_out)
     return replace(decision, ranking=replace(ranking, best=best))
+
+
+def add_forces_that_balance(question: Question, selection: Selection) -> Selection:
+    """Add a spring to the ground with the force that it balances, where recordings require both.
+
+    Args:
+        question: Candidates and held-out recordings.
+        selection: Selected effects.
+    """
+    problem, ranking = selection.problem, selection.ranking
+    found = add_balanced_forces(problem, ranking, question.candidates, question.held_out)
+    return replace(selection, ranking=found)
 
 
 def describe_unexplained_force(

@@ -11,7 +11,11 @@ from boatsim.diagnosis.fit import remove_effect
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.output_error.errors import MODEL
-from boatsim.diagnosis.output_error.search import OutputErrorSearch, error_ratio
+from boatsim.diagnosis.output_error.search import (
+    OutputErrorSearch,
+    error_ratio,
+    with_coefficients_of_file,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search import generalization
@@ -32,9 +36,10 @@ def fit_to_simulations(
 
     A Kalman filter ascribes such a force to a disturbance, so that it finds coefficients and
     effects which explain single steps, but may simulate badly. Parameters of effects that are
-    stated as causes keep their values; an effect that simulations contradict is only possible.
-    Candidates are added that make simulations better, as a description. Each vessel is replaced
-    only if it predicts held-out recordings clearly better.
+    stated as causes keep their values, unless free runs found these effects; an effect that
+    simulations contradict is only possible. Candidates are added that make simulations better,
+    as a description. Each vessel is replaced only if it predicts held-out recordings clearly
+    better.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -50,20 +55,20 @@ def fit_to_simulations(
         return ranking
     first = budget.part(FIRST_SHARE)
     simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=first)
-    simple.start_from(_with_coefficients_of_file(ranking.recalibrated))
+    simple.start_from(with_coefficients_of_file(ranking.recalibrated))
     retuned = simple.model
     better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)
-    stated = [
-        one.name
-        for one in ranking.named
-        if not refines_estimated_number(problem, ranking.best, one.name)
-    ]
+    stated = []
+    for one in ranking.named:
+        refines = refines_estimated_number(problem, ranking.best, one.name)
+        if not refines and one.name not in ranking.balanced:
+            stated.append(one.name)
     contradicted = contradicted_effects(problem, ranking.best, stated, held_out, first)
     kept = [name for name in stated if name not in contradicted]
     if kept:
         only_stated = _without_effects(problem, ranking.best, kept)
         simple = OutputErrorSearch(problem, only_stated, held_out, kept, first)
-        simple.start_from(_with_coefficients_of_file(only_stated))
+        simple.start_from(with_coefficients_of_file(only_stated))
     before = simple.model
     candidates = [name for name in candidates if name not in contradicted]
     simple.add_effects(candidates)
@@ -157,15 +162,6 @@ def _better_of_two(
     return simple
 
 
-def _with_coefficients_of_file(found: Fit) -> Fit:
-    """A fit whose coefficients have the values of the vessel file."""
-    theta = found.theta.copy()
-    for i, parameter in enumerate(found.free):
-        if parameter.relative:
-            theta[i] = parameter.mean
-    return replace(found, theta=theta)
-
-
 def _without_effects(problem: Problem, best: Fit, kept: Sequence[str]) -> Fit:
     """A fit with some of its effects only, not refitted."""
     found = best
@@ -197,7 +193,7 @@ def _with_corrected(ranking: Ranking, found: Fit, contradicted: Sequence[str]) -
     for one in ranking.named:
         if one.name not in found.effects:
             named.remove(one)
-            if one.name in contradicted:
+            if one.name in contradicted or one.name in ranking.balanced:
                 doubtful.append(one)
     return replace(
         ranking,
