@@ -443,7 +443,11 @@ def _position_queues(work: _Work) -> list[Queue]:
     x, y = work.columns.get("x_m"), work.columns.get("y_m")
     if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
         return []
-    return list(queued_positions(x.given.t, x.given.values, y.given.values))
+    t, north, east = x.given.t, x.given.values, y.given.values
+    if np.isfinite(work.begin) and work.begin < t[0]:  # rows without a fix at the beginning
+        t = np.append(work.begin, t)
+        north, east = np.append(np.nan, north), np.append(np.nan, east)
+    return list(queued_positions(t, north, east))
 
 
 def _drop_queued(work: _Work, queues: Sequence[Queue], names: Sequence[str]) -> None:
@@ -463,8 +467,7 @@ def _drop_queued(work: _Work, queues: Sequence[Queue], names: Sequence[str]) -> 
             work.remark(
                 f"{', '.join(dropped)}: the samples from {queue.begin - work.begin:.4g} s to "
                 f"{queue.end - work.begin:.4g} s after the beginning had queued since "
-                f"{queue.last - work.begin:.4g} s; the vessel stands still over the gap and then "
-                f"moves too fast; they are omitted"
+                f"{queue.last - work.begin:.4g} s: {queue.evidence}; they are omitted"
             )
 
 
