@@ -37,6 +37,7 @@ from boatsim.diagnosis.checks.ignored_commands import (
 )
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.checks.rest import cut_intervals_at_rest
+from boatsim.diagnosis.checks.unmeasured_times import cut_unmeasured_times
 from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, recordings_without_pushes
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
@@ -195,7 +196,7 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
-    loaded = cut_intervals_at_rest(loaded, config)
+    loaded = cut_intervals_at_rest(cut_unmeasured_times(loaded, config), config)
     question = set_up_estimation_problem(loaded, config)
     given = loaded.findings
     report("compiling, or loading what was compiled before")

@@ -26,7 +26,7 @@ from boatsim.recordings.importing.queued_messages import (
     late_samples,
     queued_positions,
 )
-from boatsim.recordings.importing.regular_times import regular_times
+from boatsim.recordings.importing.regular_times import regular_times, values_at_rows
 from boatsim.recordings.importing.resample import (
     MIN_LOST,
     Samples,
@@ -61,6 +61,7 @@ HELD = (
 )
 FASTER = 1.5  # commands set the clock if their rate is this many times that of the poses
 ROW_TOLERANCE = 0.05  # a sample is in a row if it is nearer than this share of the step of the rows
+MOST_IN_ROWS = 0.9  # of the positions are in rows of others; queued angles may have been omitted
 MAX_ROUNDS = 4
 # A track begins with positions that were not measured if it leaps from 0 by this many usual steps
 MIN_LEAP, USUAL_STEP_PERCENTILE = 10.0, 99.0
@@ -443,7 +444,11 @@ def _position_queues(work: _Work) -> list[Queue]:
     x, y = work.columns.get("x_m"), work.columns.get("y_m")
     if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
         return []
-    return list(queued_positions(x.given.t, x.given.values, y.given.values))
+    t, north, east = x.given.t, x.given.values, y.given.values
+    if np.isfinite(work.begin) and work.begin < t[0]:  # rows without a fix at the beginning
+        t = np.append(work.begin, t)
+        north, east = np.append(np.nan, north), np.append(np.nan, east)
+    return list(queued_positions(t, north, east))
 
 
 def _drop_queued(work: _Work, queues: Sequence[Queue], names: Sequence[str]) -> None:
@@ -463,27 +468,48 @@ def _drop_queued(work: _Work, queues: Sequence[Queue], names: Sequence[str]) -> 
             work.remark(
                 f"{', '.join(dropped)}: the samples from {queue.begin - work.begin:.4g} s to "
                 f"{queue.end - work.begin:.4g} s after the beginning had queued since "
-                f"{queue.last - work.begin:.4g} s; the vessel stands still over the gap and then "
-                f"moves too fast; they are omitted"
+                f"{queue.last - work.begin:.4g} s: {queue.evidence}; they are omitted"
             )
 
 
 def _regularize_positions(work: _Work) -> None:
-    """Move positions to the times at which their sensor measured, if the program read them late."""
+    """Correct positions that a program read late, where their sensor measures in a rhythm.
+
+    In a table the program wrote them into the rows of other sensors. There they are moved along the
+    track to the times of these rows: rows of their own would make a recording half as long again,
+    and a diagnosis as slow.
+    """
     x, y = work.columns.get("x_m"), work.columns.get("y_m")
     if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
         return
-    found = regular_times(x.given.t, x.given.values + 1j * y.given.values)
+    read = x.given.t
+    found = regular_times(read, x.given.values + 1j * y.given.values)
     if found is None:
         return
     t, period = found
-    shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
+    shift = float(np.sqrt(np.mean((t - read) ** 2)))
+    in_rows = _are_in_rows_of_others(work, read)
+    how = "moved to the times of that rhythm"
+    if in_rows:
+        how = "moved along the track from the times of that rhythm to those of their rows"
     work.remark(
         f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it late; the "
-        f"samples are moved to the times of that rhythm, by {shift:.2g} s rms"
+        f"samples are {how}, by {shift:.2g} s rms"
     )
     for name, column in (("x_m", x), ("y_m", y)):
-        work.columns[name] = replace(column, given=Samples(t, column.given.values))
+        samples = Samples(t, column.given.values)
+        if in_rows:
+            samples = Samples(read, values_at_rows(read, t, column.given.values))
+        work.columns[name] = replace(column, given=samples)
+
+
+def _are_in_rows_of_others(work: _Work, t: Array) -> bool:
+    """Whether most positions have the times of samples of another pose or rate."""
+    for name, column in work.columns.items():
+        if name in (*POSE, *RATES) and name not in PLACE and not column.held:
+            if np.isin(t, column.given.t).mean() > MOST_IN_ROWS:
+                return True
+    return False
 
 
 def _drop_stale(work: _Work) -> None:
