@@ -85,7 +85,13 @@ IMPORTERS_IN_DIAGNOSIS = {  # upper folder of the diagnosis -> what else there m
 READ_BY_REPORT = {  # what a report imports from the diagnosis: the answer, its curves, and words
     f"boatsim.diagnosis.{name}"
     for name in (
-        *("answer.schema", "answer.findings", "answer.families", "answer.verdict"),
+        *(
+            "answer.schema",
+            "answer.findings",
+            "answer.families",
+            "answer.formulas",
+            "answer.verdict",
+        ),
         *("answer.confirmation", "answer.described_terms", "answer.incomplete", "answer.log_entry"),
         "answer.refined_numbers",
         *("model_names", "description.FittedTerm", "free_runs.FreeRun", "report"),

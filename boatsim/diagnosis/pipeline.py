@@ -37,6 +37,7 @@ from boatsim.diagnosis.checks.ignored_commands import (
 )
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.checks.rest import cut_intervals_at_rest
+from boatsim.diagnosis.checks.unmeasured_times import cut_unmeasured_times
 from boatsim.diagnosis.checks.unrecorded_push import has_measured_input, recordings_without_pushes
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import select_correlation_time
@@ -49,6 +50,7 @@ from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
+from boatsim.diagnosis.output_error.balanced_forces import add_balanced_forces
 from boatsim.diagnosis.output_error.stage import fit_to_simulations
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
@@ -194,7 +196,7 @@ def diagnose_loaded(
     Raises:
         BadInput: The recordings cannot be used.
     """
-    loaded = cut_intervals_at_rest(loaded, config)
+    loaded = cut_intervals_at_rest(cut_unmeasured_times(loaded, config), config)
     question = set_up_estimation_problem(loaded, config)
     given = loaded.findings
     report("compiling, or loading what was compiled before")
@@ -250,6 +252,8 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
+    report("looking for forces that balance each other", SELECTING[1])
+    selection = add_forces_that_balance(question, selection)
     decision = decide_causes(question, selection)
     report_last = report_part_of(report, SELECTING[1], SELECTING[1])
     loaded, question, decision = try_last_candidates(loaded, question, decision, report_last)
@@ -514,7 +518,8 @@ def try_last_candidates(
         gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
     if gain < config.select.last_gain:
         return loaded, question, decision
-    other = decide_causes(again, select_candidates(again, base, wider, report))
+    selection = select_candidates(again, base, wider, report)
+    other = decide_causes(again, add_forces_that_balance(again, selection))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:
         return wider, again, other
@@ -542,6 +547,18 @@ def keep_undetermined_coefficients(question: Question, decision: Decision) -> De
         return decision
     best = fix_undetermined_coefficients(decision.problem, ranking.best, question.held_out)
     return replace(decision, ranking=replace(ranking, best=best))
+
+
+def add_forces_that_balance(question: Question, selection: Selection) -> Selection:
+    """Add a spring to the ground with the force that it balances, where recordings require both.
+
+    Args:
+        question: Candidates and held-out recordings.
+        selection: Selected effects.
+    """
+    problem, ranking = selection.problem, selection.ranking
+    found = add_balanced_forces(problem, ranking, question.candidates, question.held_out)
+    return replace(selection, ranking=found)
 
 
 def describe_unexplained_force(

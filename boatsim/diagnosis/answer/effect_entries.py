@@ -128,7 +128,7 @@ def possible_entry(
         why = CONTRADICTED
     elif judged.outcome == "unconfirmed":
         why = reason_unconfirmed(judged)
-    return {
+    entry: PossibleEntry = {
         "name": name_without_prefixes(doubtful.name),
         "probability": round(doubtful.probability, 4),
         "gain_nats": round(doubtful.gain, 2),
@@ -139,6 +139,11 @@ def possible_entry(
         "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
+    balanced = decision.ranking.balanced
+    if doubtful.name in balanced:
+        (other,) = [name for name in balanced if name != doubtful.name]
+        entry["together_with"] = name_without_prefixes(other)
+    return entry
 
 
 def _parameters(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:

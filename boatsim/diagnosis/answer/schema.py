@@ -85,6 +85,7 @@ class PossibleEntry(TypedDict):
     parameters: NotRequired[dict[str, "ParameterEntry"]]
     alone: NotRequired[dict[Family, AloneEntry]]
     confirmed: NotRequired[bool]
+    together_with: NotRequired[str]  # effect that balances it; free runs require both or neither
 
 
 class AddedEntry(TypedDict):

@@ -104,20 +104,23 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     if not tested_any_candidate(answer):
         return _none_tested(answer)
     statements = _effects(answer, words or {})
-    statements += _formulas(answer, bool(answer["effects"]))
+    stated, uncertain = _formulas(answer, bool(answer["effects"]))
+    statements += stated
     refined = _refined_numbers(answer)
     if not statements and refined:
         return NOTHING_MISSING.format(f"with {refined} refined, ")
     if not statements:
         return NOTHING_MISSING.format(REFITTED if has_refitted_coefficients(answer) else "")
     statements += _look_alikes(answer["effects"])
+    statements += _balanced_effects(answer, words or {})
+    statements += _confirmed_possible(answer)
+    statements += uncertain
     if refined:
         one = len(answer["refined"]) == 1
         statement = f"{refined} {'was' if one else 'were'} refined"
         if main := main_refinement(answer):
             statement += f": {main}" if one else f", above all {main}"
         statements.append(statement)
-    statements += _confirmed_possible(answer)
     statements += _added(answer)
     return " ".join(f"{capitalize(statement)}." for statement in statements)
 
@@ -131,7 +134,8 @@ def _confirmed_possible(answer: Answer) -> list[str]:
         return []
     found = []
     for entry in answer.get("also_possible", []):
-        if entry.get("in_patch") and entry.get("confirmed"):
+        balanced = entry.get("together_with")
+        if entry.get("in_patch") and entry.get("confirmed") and not balanced:
             found.append(f"“{effect_description(entry['words'])}”")
     if not found:
         return []
@@ -139,6 +143,32 @@ def _confirmed_possible(answer: Answer) -> list[str]:
     if len(found) > 1:
         reason = "held-out recordings confirm them, but they may stand in for other causes"
     return [f"the corrected vessel contains {join_words(found[:MOST_NUMBERS])}: {reason}"]
+
+
+def _balanced_effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
+    """Return the statement on two possible effects that balance each other in simulations.
+
+    The held-out recordings confirm both.
+    """
+    found = []
+    for entry in answer.get("also_possible", []):
+        if entry.get("together_with") and entry.get("in_patch") and entry.get("confirmed"):
+            effect: EffectEntry = {
+                "name": entry["name"],
+                "kind": "physics",
+                "probability": entry["probability"],
+                "gain_nats": entry["gain_nats"],
+                "words": entry["words"],
+                "tied_with": [],
+                "parameters": entry.get("parameters", {}),
+            }
+            found.append(_clause(effect, words))
+    if len(found) < 2:
+        return []
+    return [
+        f"simulations require two effects together: {_clauses(found)}; held-out recordings confirm "
+        "them, but they may stand in for other causes"
+    ]
 
 
 def _added(answer: Answer) -> list[str]:
@@ -329,10 +359,11 @@ def count_in_words(count: int, noun: str) -> str:
     return f"{number_words} {noun}s"
 
 
-def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
-    """Return statements on the formulas: those that generalize first, single events as a count.
+def _formulas(answer: Answer, effects_precede: bool) -> tuple[list[str], list[str]]:
+    """Return statements on the formulas: those that are stated, and those that are uncertain.
 
-    Formulas that are not certain enough to be stated follow without their terms.
+    Of the stated ones, those that generalize are first, single events follow as a count. The
+    uncertain ones are mentioned without their terms.
     """
     general, events, others = list[str](), list[str](), list[DescribedEntry]()
     for law in answer["described"]:
@@ -352,7 +383,7 @@ def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
         statements = [f"the model lacks {event}" for event in events[:MOST_NUMBERS]]
     if statements and effects_precede:
         statements[0] = f"in addition, {statements[0]}"
-    return statements + _uncertain_formulas(answer, others)
+    return statements, _uncertain_formulas(answer, others)
 
 
 def _uncertain_formulas(answer: Answer, formulas: Sequence[DescribedEntry]) -> list[str]:

@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.physics.base import Array
-from boatsim.recordings.importing.regular_times import regular_times
+from boatsim.recordings.importing.regular_times import regular_times, values_at_rows
 from boatsim.recordings.table import Recording
 
 PLACE = ("x_m", "y_m")
@@ -41,7 +40,7 @@ def correct_position_times(recording: Recording) -> Recording:
     regular, period = found
     moved = np.full(places.shape, np.nan)
     for i in range(len(PLACE)):
-        moved[measured, i] = _at_rows(t, regular, places[measured, i])
+        moved[measured, i] = values_at_rows(t, regular, places[measured, i])
     shift = float(np.sqrt(np.mean((regular - t) ** 2)))
     remark = (
         f"{recording.origin}: x_m, y_m {LATE_BY_ROWS}: every {period:.4g} s by the "
@@ -50,13 +49,3 @@ def correct_position_times(recording: Recording) -> Recording:
     )
     signals = dict(recording.signals) | {name: moved[:, i] for i, name in enumerate(PLACE)}
     return replace(recording, signals=signals, remarks=(*recording.remarks, remark))
-
-
-def _at_rows(t: Array, regular: Array, values: Array) -> Array:
-    """Values (N,) at the times of rows (N,), from values at other times by straight lines.
-
-    The first and the last ones are extrapolated by the slope of the nearest line.
-    """
-    i = np.clip(np.searchsorted(regular, t) - 1, 0, len(t) - 2)
-    slope = (values[i + 1] - values[i]) / (regular[i + 1] - regular[i])
-    return np.asarray(values[i] + slope * (t - regular[i]))

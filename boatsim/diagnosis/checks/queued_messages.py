@@ -35,7 +35,6 @@ def drop_queued_messages(recording: Recording) -> Recording:
                 dropped.append(name)
         remarks.append(
             f"{recording.origin}: {', '.join(dropped)} from t = {queue.begin:g} s to "
-            f"{queue.end:g} s {QUEUED} since {queue.last:g} s: the vessel stands still over the "
-            f"gap and then moves too fast; they are not used"
+            f"{queue.end:g} s {QUEUED} since {queue.last:g} s: {queue.evidence}; they are not used"
         )
     return replace(recording, signals=signals, remarks=tuple(remarks))

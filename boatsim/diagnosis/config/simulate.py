@@ -55,6 +55,34 @@ class SimulateConfig:
         10, "count", "Candidates of the largest predicted gain that get a rough fit.", low=1
     )
     followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
+    pair_budget: int = setting(
+        220_000_000,
+        "steps x dof",
+        "Work of the search for a spring to the ground together with the force that it balances; "
+        "then no further pair is tried. It takes about 30 seconds of CPU.",
+        low=1,
+    )
+    pair_starts: tuple[float, ...] = setting(
+        (0.1, 0.3, 1.0),
+        "prior sd",
+        "Sizes of a spring from which the fits of a pair start: each next frequency is 1.8 times "
+        "the one before.",
+        low=1e-6,
+    )
+    pair_steps: int = setting(
+        5,
+        "count",
+        "Gauss-Newton steps of a rough fit of two effects that balance each other; their starting "
+        "values may have the wrong signs.",
+        low=1,
+    )
+    fitted_pairs: int = setting(
+        3,
+        "count",
+        "Most pairs of effects that get a full fit, in the order of the evidence of their rough "
+        "fits.",
+        low=1,
+    )
     fitted: int = setting(
         5,
         "count",

@@ -132,13 +132,95 @@ class OutputErrorSearch:
             else:
                 return
 
+    def most_probable_pair(self, first: str, seconds: Sequence[str]) -> Fit | None:
+        """Return the vessel with one effect and that other one which together gain most.
+
+        Rough fits of the first effect with each other one order the pairs; the most probable ones
+        are then fitted in full. They start from several sizes of the first effect, because the
+        frequency of an oscillation depends on the size of a spring, so that free runs have several
+        maxima. A pair may explain just the runs that had unusually large errors
+        and little weight without it. Therefore each fit is repeated with the weights of its
+        errors, and the fits are compared by Student's t distribution itself.
+
+        Args:
+            first: Name of the effect that each pair has.
+            seconds: Names of the others.
+
+        Returns:
+            The fitted vessel; None unless free runs gain `simulate.effect_gain` for each effect of
+            the pair over the vessel without it, and those over held-out recordings are more
+            probable with the pair and not clearly worse.
+        """
+        base = self.model
+        pairs = list[tuple[float, Fit]]()
+        for second in seconds:
+            if self.budget.is_spent:
+                break
+            for start in self._starts_over_range(base, first):
+                rough = self._rough_fit(self._starts_with(start, second)).model
+                pairs.append((self._gain(rough, base), rough))
+        fitted = list[tuple[float, Fit]]()
+        for rough in _best_of_each_set(pairs)[: self.config.fitted_pairs]:
+            pair = self._reweighted_fit(rough)
+            fitted.append((self._gain(pair, base), pair))
+        if not fitted:
+            return None
+        gain, pair = max(fitted, key=lambda one: one[0])
+        least = 2.0 * self.config.effect_gain
+        if gain < least or self._held_out_gain(pair) <= 0.0 or self.harms(pair):
+            return None
+        for single in (first, pair.effects[-1]):
+            alone = self._reweighted_fit(self._rough_fit(self._starts_with(base, single)).model)
+            if self._gain(pair, alone) < self.config.effect_gain:
+                return None
+        return pair
+
+    def _starts_over_range(self, model: Fit, name: str) -> list[Fit]:
+        """A vessel with one more effect of several sizes over its usual range."""
+        start = self._starts_with(model, name)[0]
+        found = []
+        for share in self.config.pair_starts:
+            theta = start.theta.copy()
+            for i in range(len(model.free), len(theta)):
+                theta[i] = start.free[i].mean + share * start.free[i].sd
+            found.append(replace(start, theta=theta))
+        return found
+
+    def _reweighted_fit(self, start: Fit) -> Fit:
+        """Fit a vessel, and again with the weights of its errors, in the same units."""
+        found = self._fitted(start).model
+        own = self._errors_of(found)
+        errors = replace(self.errors, weights=own.weights)
+        return fit_to_free_runs(errors, found, self.fixed_effects).model
+
+    def _gain(self, found: Fit, reference: Fit) -> float:
+        """How much more probable free runs over the fitted recordings are by one vessel [nats]."""
+        both = {BEFORE: reference, AFTER: found}
+        runs = free_runs(self.problem, both, self.problem.recordings, self.horizon)
+        before, after = run_errors(runs, BEFORE), run_errors(runs, AFTER)
+        return log_likelihood_gain(after, before, self.errors.scale)
+
+    def _held_out_gain(self, found: Fit) -> float:
+        """How much more probable free runs over held-out recordings are by a vessel [nats]."""
+        before, after = self._held_out_errors(found)
+        return log_likelihood_gain(after, before, self.errors.scale)
+
+    def _starts_with(self, model: Fit, name: str) -> list[Fit]:
+        """A vessel with one more effect, at each of its starting points."""
+        return starting_fits(self.problem, model, self.problem.candidates[name])
+
+    def _rough_fit(self, starts: Sequence[Fit]) -> OutputErrorFit:
+        """The most probable rough fit from several starts with further effects."""
+        steps = self.config.pair_steps
+        rough = [add_parameters(self.errors, self.best, start, steps) for start in starts]
+        return max(rough, key=lambda one: one.evidence)
+
     def _is_better(self, further: OutputErrorFit) -> bool:
         """Whether simulations are more probable with one more effect, and none clearly worse."""
         fitted = further.evidence - self.best.evidence
         if fitted <= 0.0:
             return False
-        before, after = self._held_out_errors(further.model)
-        held_out = log_likelihood_gain(after, before, self.errors.scale)
+        held_out = self._held_out_gain(further.model)
         if held_out <= 0.0 or fitted + held_out < self.config.effect_gain:
             return False
         return not self.harms(further.model)
@@ -242,6 +324,27 @@ class OutputErrorSearch:
                 found.append((most, best))
         found.sort(key=lambda one: -one[0])
         return [start for _, start in found]
+
+
+def _best_of_each_set(fits: Sequence[tuple[float, Fit]]) -> list[Fit]:
+    """The fit with the largest gain of each set of effects, in the order of their gains."""
+    found = dict[tuple[str, ...], Fit]()
+    for _, one in sorted(fits, key=lambda pair: -pair[0]):
+        found.setdefault(one.effects, one)
+    return list(found.values())
+
+
+def with_coefficients_of_file(found: Fit) -> Fit:
+    """Return a fit whose coefficients have the values of the vessel file, not refitted.
+
+    Args:
+        found: Fit of the vessel model with some candidate effects.
+    """
+    theta = found.theta.copy()
+    for i, parameter in enumerate(found.free):
+        if parameter.relative:
+            theta[i] = parameter.mean
+    return replace(found, theta=theta)
 
 
 def error_ratio(

@@ -7,18 +7,22 @@ import numpy as np
 
 from boatsim.diagnosis.description import FittedTerm, SymbolicDescription
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import remove_effect
+from boatsim.diagnosis.fit import remove_effect, unfitted_hypothesis
 from boatsim.diagnosis.free_runs import free_run_horizon, free_runs, rms_errors
 from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.output_error.errors import MODEL
-from boatsim.diagnosis.output_error.search import OutputErrorSearch, error_ratio
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.output_error.search import (
+    OutputErrorSearch,
+    error_ratio,
+    with_coefficients_of_file,
+)
+from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import Ranking
 
-FIRST_SHARE = 0.5  # of the budget, for the first of two searches, so that the second one can end
+FIRST_SHARE = 0.5  # of the budget, for the first search, so that further ones can end
 
 
 def fit_to_simulations(
@@ -32,9 +36,10 @@ def fit_to_simulations(
 
     A Kalman filter ascribes such a force to a disturbance, so that it finds coefficients and
     effects which explain single steps, but may simulate badly. Parameters of effects that are
-    stated as causes keep their values; an effect that simulations contradict is only possible.
-    Candidates are added that make simulations better, as a description. Each vessel is replaced
-    only if it predicts held-out recordings clearly better.
+    stated as causes keep their values, unless free runs found these effects; an effect that
+    simulations contradict is only possible. Candidates are added that make simulations better,
+    as a description. Each vessel is replaced only if it predicts held-out recordings clearly
+    better.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -50,28 +55,27 @@ def fit_to_simulations(
         return ranking
     first = budget.part(FIRST_SHARE)
     simple = OutputErrorSearch(problem, ranking.recalibrated, held_out, budget=first)
-    simple.start_from(_with_coefficients_of_file(ranking.recalibrated))
+    simple.start_from(with_coefficients_of_file(ranking.recalibrated))
     retuned = simple.model
     better = _is_clearly_better(problem, retuned, ranking.recalibrated, held_out)
-    stated = [
-        one.name
-        for one in ranking.named
-        if not refines_estimated_number(problem, ranking.best, one.name)
-    ]
+    stated = []
+    for one in ranking.named:
+        refines = refines_estimated_number(problem, ranking.best, one.name)
+        if not refines and one.name not in ranking.balanced:
+            stated.append(one.name)
     contradicted = contradicted_effects(problem, ranking.best, stated, held_out, first)
     kept = [name for name in stated if name not in contradicted]
     if kept:
         only_stated = _without_effects(problem, ranking.best, kept)
         simple = OutputErrorSearch(problem, only_stated, held_out, kept, first)
-        simple.start_from(_with_coefficients_of_file(only_stated))
+        simple.start_from(with_coefficients_of_file(only_stated))
     before = simple.model
     candidates = [name for name in candidates if name not in contradicted]
     simple.add_effects(candidates)
     others = [name for name in ranking.best.effects if name not in contradicted]
     search = simple
-    if set(others) != set(kept):
-        start = _without_effects(problem, ranking.best, others)
-        search = _better_of_two(simple, before, start, candidates, budget)
+    for start in _further_starts(problem, ranking.best, before, others):
+        search = _better_of_two(search, before, start, candidates, budget)
     if search.budget.is_spent and not budget.is_spent:
         search.budget = budget
         search.add_effects(candidates)
@@ -124,6 +128,32 @@ def _is_clearly_better(
     return not generalization.harmed_groups(problem, reference, found, held_out, horizon)
 
 
+def _further_starts(problem: Problem, best: Fit, before: Fit, others: Sequence[str]) -> list[Fit]:
+    """Return the vessels from which the search starts besides that of the stated effects.
+
+    The first one is the vessel of the Kalman filter. In the second one the coefficients are those
+    that were fitted to free runs, because the filter ascribes much of what a wrong coefficient does
+    to a disturbance, so that its coefficients may be too far from those of free runs to be a start.
+    The terms of a formula are left out of the second one: they describe what the model with the
+    filter's coefficients left unexplained.
+
+    Args:
+        problem: The estimation problem.
+        best: Fit of the Kalman filter with all effects and terms that it selected.
+        before: The vessel with the effects that are stated as causes, fitted to free runs.
+        others: Names of the effects and terms of the filter that simulations do not contradict.
+    """
+    starts = list[Fit]()
+    if set(others) != set(before.effects):
+        starts.append(_without_effects(problem, best, others))
+    effects = [name for name in others if not type(problem.candidates[name]).described]
+    if set(effects) != set(before.effects):
+        free = problem.free_parameters(tuple(effects))
+        theta = free_parameter_values(free, {**best.values(), **before.values()})
+        starts.append(unfitted_hypothesis(tuple(effects), free, theta, before.levels))
+    return starts
+
+
 def _better_of_two(
     simple: OutputErrorSearch,
     before: Fit,
@@ -131,16 +161,16 @@ def _better_of_two(
     candidates: Sequence[str],
     budget: SearchBudget,
 ) -> OutputErrorSearch:
-    """The better of two searches: from few effects, and from all that the filter selected.
+    """The better of two searches: a completed one, and one from effects of the filter.
 
     Each search adds one effect at a time, so that its result depends on its start. What the filter
     selected is no start if simulations of a group of recordings get much worse by it, because later
     steps are compared with the start.
 
     Args:
-        simple: The search from the effects that are stated as causes, completed.
-        before: Its vessel before effects were added.
-        start: The vessel with all effects that the filter selected.
+        simple: The completed search, such as that from the effects that are stated as causes.
+        before: The vessel of the effects that are stated as causes, before effects were added.
+        start: The vessel with effects that the filter selected.
         candidates: Names of the candidates that may be added.
         budget: Work that the second search may do.
     """
@@ -155,15 +185,6 @@ def _better_of_two(
     if simple.held_out_ratio(whole.model) < 1.0 and not simple.harms(whole.model):
         return whole
     return simple
-
-
-def _with_coefficients_of_file(found: Fit) -> Fit:
-    """A fit whose coefficients have the values of the vessel file."""
-    theta = found.theta.copy()
-    for i, parameter in enumerate(found.free):
-        if parameter.relative:
-            theta[i] = parameter.mean
-    return replace(found, theta=theta)
 
 
 def _without_effects(problem: Problem, best: Fit, kept: Sequence[str]) -> Fit:
@@ -197,7 +218,7 @@ def _with_corrected(ranking: Ranking, found: Fit, contradicted: Sequence[str]) -
     for one in ranking.named:
         if one.name not in found.effects:
             named.remove(one)
-            if one.name in contradicted:
+            if one.name in contradicted or one.name in ranking.balanced:
                 doubtful.append(one)
     return replace(
         ranking,

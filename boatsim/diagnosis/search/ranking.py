@@ -87,6 +87,9 @@ class Ranking:
     by_free_runs: bool = False
     # effects of `best` that only make its free runs better: no statement about causes
     added: tuple[str, ...] = ()
+    # effects that free runs found together; the filter takes up much of their slow motion, so that
+    # free runs determine their sizes, too
+    balanced: tuple[str, ...] = ()
     # effects among `doubtful` without which free runs are clearly more probable
     contradicted: tuple[str, ...] = ()
 
@@ -182,6 +185,43 @@ def select_and_rank_candidates(
         structured=_clearly_correlates(sets, correlated, gain, decide.structure_share),
         without=sets.fits_without_each(best),
         skipped=sets.budget.skipped_work_statements,
+    )
+
+
+def with_further_effects(
+    problem: Problem,
+    ranking: Ranking,
+    best: Fit,
+    named: tuple[IdentifiedEffect, ...],
+    without: Mapping[str, Fit],
+) -> Ranking:
+    """Return a ranking with further deterministic effects and what these leave unexplained.
+
+    Args:
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection.
+        best: Converged fit with the further effects.
+        named: Statistics of all its effects.
+        without: Converged fits without one of its effects, by the name of the effect.
+    """
+    config = problem.config
+    explained = ranking.explained + float(best.evidence - ranking.best.evidence)
+    correlated = find_structure(problem, best)
+    gain = float(best.evidence - ranking.recalibrated.evidence)
+    structured = unknown_cause_threshold(config.select, gain, config.decide.structure_share)
+    return replace(
+        ranking,
+        best=inflate_covariance(problem, best),
+        named=named,
+        last={name: fit for name, fit in ranking.last.items() if name not in best.effects},
+        left_over=unexplained_evidence(problem, best),
+        structure=correlated,
+        explained=explained,
+        told_from=unknown_cause_threshold(
+            config.select, explained, config.decide.unexplained_share
+        ),
+        structured=bool(correlated.significant and correlated.gain > structured),
+        without=without,
     )
 
 

@@ -2,8 +2,9 @@
 
 A link or a program stalls, and nothing is logged. Then the queued messages are read one after
 another, faster than they were sent: the recorded vessel stands still over the gap, and afterwards
-moves faster than before and after, until the queue is empty. A queue that is read at once shows
-itself by the number of its messages too.
+moves faster than before and after, until the queue is empty. The number of messages shows a queue
+as well: a sensor of regular rate cannot have sent more since the gap than fit into the time. This
+also tells a queue with which a log begins, before which no speed is known.
 """
 
 from collections.abc import Iterator
@@ -30,6 +31,10 @@ NEARLY = 0.9
 QUIET = 0.5  # of the gap without a new value: the signal stalled with the positions
 LONGEST_QUEUE = 3.0  # of the gap: a queue that is read at less than 1.3 times its rate is not told
 LEAST_PATH = 0.5  # [m] that must be missing over the gap
+# Messages over which the period of the sensor is averaged: the jitter of a program that polls,
+# about a period, is then 5 % of the sum
+PERIODS = 20
+LEAST_QUEUE = 2.0  # messages: a program that polls reads one up to a period late
 BURST_INTERVAL = 0.2  # of the usual interval: messages that were read at once
 BURST_TOLERANCE = 0.1  # share by which their number may differ from the missing one
 
@@ -38,21 +43,36 @@ class Queue(NamedTuple):
     """Interval in which queued positions were read.
 
     Attributes:
-        last: Time of the last fix before the gap [s].
+        last: Time of the last fix before the gap, or of the beginning of the log [s].
         begin: Time of the first fix after the gap [s].
         end: Time of the first fix that is on time again [s].
+        late: Age of the first fix after the gap, by the number of messages [s]; nan if unknown.
     """
 
     last: float
     begin: float
     end: float
+    late: float = float("nan")
+
+    @property
+    def evidence(self) -> str:
+        """Clause of a remark that states the sign of the queue."""
+        if np.isfinite(self.late):
+            return (
+                "messages then follow faster than the sensor sends them, and the first one is "
+                f"{self.late:.2g} s old"
+            )
+        return "the vessel stands still over the gap and then moves too fast"
 
 
 def queued_positions(t: Array, x: Array, y: Array) -> Iterator[Queue]:
     """Yield the intervals in which queued positions were read.
 
+    The time before the first fix counts as a gap too: a program that waits for its first messages
+    may find them queued.
+
     Args:
-        t: Times of the rows (N,) [s].
+        t: Times of the rows (N,) [s], those without a fix among them.
         x: Positions north (N,) [m]; nan where unknown.
         y: Positions east (N,) [m]; nan where unknown.
     """
@@ -67,16 +87,24 @@ def queued_positions(t: Array, x: Array, y: Array) -> Iterator[Queue]:
         return
     usual, rare = np.percentile(intervals, [50.0, RARE])
     longest = max(LONG_GAP * usual, RARE_GAP * rare, LEAST_GAP)
+    period = _period(times)
+    since = np.append(t[0], times[:-1])  # the last fix before each one, or the beginning
     on_time = -np.inf
-    for i in np.flatnonzero(intervals > longest):
-        if times[i] < on_time:
+    for i in map(int, np.flatnonzero(times - since > longest)):
+        if since[i] < on_time:
             continue
-        end = _end_of_burst(times, int(i), float(usual))
+        end, late = None, float("nan")
+        if i > 0:
+            end = _end_of_burst(times, i - 1, float(usual))
+            if end is None:
+                end = _end_of_queue(times, points, i - 1)
         if end is None:
-            end = _end_of_queue(times, points, int(i))
+            end = _end_by_count(times, i, float(times[i] - since[i]), period)
+            if end is not None:
+                late = _age(times, i, end, period)
         if end is not None:
             on_time = times[end]
-            yield Queue(float(times[i]), float(times[i + 1]), float(on_time))
+            yield Queue(float(since[i]), float(times[i]), float(on_time), late)
 
 
 def late_samples(t: Array, values: Array, queue: Queue) -> NDArray[np.bool_]:
@@ -98,6 +126,47 @@ def late_samples(t: Array, values: Array, queue: Queue) -> NDArray[np.bool_]:
     if queue.begin - newest < QUIET * (queue.begin - queue.last):
         return np.zeros(len(t), dtype=np.bool_)
     return np.asarray((t > max(newest, queue.last)) & (t < queue.end))
+
+
+def _period(t: Array) -> float:
+    """Period [s] of the sensor, the median over many messages; nan if there are too few.
+
+    Stalls and queues change the mean of a log, but not that of most of its parts.
+    """
+    if len(t) <= 2 * PERIODS:
+        return float("nan")
+    return float(np.median(t[PERIODS:] - t[:-PERIODS])) / PERIODS
+
+
+def _age(t: Array, i: int, end: int, period: float) -> float:
+    """Age [s] of fix i if fix `end` is on time and the sensor sends one in each period."""
+    return float((end - i) * period - (t[end] - t[i]))
+
+
+def _end_by_count(t: Array, i: int, gap: float, period: float) -> int | None:
+    """Number of the fix at which a queue is empty whose first message is fix i; None without one.
+
+    While the queue is read, messages follow faster than their sensor sends them. None can be older
+    than the gap. A sensor that has become faster for good goes on so, and shows no end.
+
+    Args:
+        t: Times of new fixes (N,) [s].
+        i: Number of the first fix after the gap.
+        gap: Time before it without a fix [s].
+        period: Period of the sensor [s]; nan if unknown.
+    """
+    if not np.isfinite(period):
+        return None
+    last, stop = np.searchsorted(t, t[i] + LONGEST_QUEUE * gap + np.array([0.0, USUAL]))
+    after = t[i:stop]
+    ahead = np.arange(len(after)) * period - after  # [s] grows while messages follow too fast
+    for j in range(min(int(last) - i, len(after))):
+        later = int(np.searchsorted(after, after[j] + USUAL, side="right"))
+        if ahead[j:later].max() - ahead[j] <= period:
+            is_followed = i + later < len(t)
+            is_queue = LEAST_QUEUE * period <= ahead[j] - ahead[0] <= gap + period
+            return i + j if is_queue and is_followed else None
+    return None
 
 
 def _end_of_burst(t: Array, i: int, usual: float) -> int | None:

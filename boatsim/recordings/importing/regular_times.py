@@ -73,6 +73,21 @@ def regular_times(t: Array, track: Array) -> tuple[Array, float] | None:
     return t[0] + regular, period
 
 
+def values_at_rows(t: Array, regular: Array, values: Array) -> Array:
+    """Return values (N,) at the times of rows, from values at other times by straight lines.
+
+    The first and the last ones are extrapolated by the slope of the nearest line.
+
+    Args:
+        t: Times of the rows (N,) [s].
+        regular: Times of the values (N,) [s], N at least 2.
+        values: Values (N,).
+    """
+    i = np.clip(np.searchsorted(regular, t) - 1, 0, len(t) - 2)
+    slope = (values[i + 1] - values[i]) / (regular[i + 1] - regular[i])
+    return np.asarray(values[i] + slope * (t - regular[i]))
+
+
 def _is_regular(t: Array) -> bool:
     """Whether nearly all steps are equal, so that nothing has to be counted."""
     steps = np.diff(t) / np.median(np.diff(t))

@@ -11,7 +11,7 @@ from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.conversion_state import ConversionState
 from boatsim.recordings.importing.log import HUGE
 from boatsim.recordings.importing.queued_messages import Queue, late_samples, queued_positions
-from boatsim.recordings.importing.regular_times import regular_times
+from boatsim.recordings.importing.regular_times import regular_times, values_at_rows
 from boatsim.recordings.importing.resample import Samples
 from boatsim.recordings.importing.track import constant_heading_fault
 from boatsim.recordings.repeated_values import repeated_rows, stale_rows
@@ -22,6 +22,7 @@ PLACE = ("x_m", "y_m")
 TOGETHER = (PLACE, ("psi_rad",))
 # A track begins with positions that were not measured if it leaps from 0 by this many usual steps
 MIN_LEAP, USUAL_STEP_PERCENTILE = 10.0, 99.0
+MOST_IN_ROWS = 0.9  # of the positions are in rows of others; queued angles may have been omitted
 
 
 def check_values(work: ConversionState, name: str, given: Samples) -> Samples:
@@ -109,7 +110,11 @@ def position_queues(work: ConversionState) -> list[Queue]:
     x, y = work.columns.get("x_m"), work.columns.get("y_m")
     if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
         return []
-    return list(queued_positions(x.given.t, x.given.values, y.given.values))
+    t, north, east = x.given.t, x.given.values, y.given.values
+    if np.isfinite(work.begin) and work.begin < t[0]:  # rows without a fix at the beginning
+        t = np.append(work.begin, t)
+        north, east = np.append(np.nan, north), np.append(np.nan, east)
+    return list(queued_positions(t, north, east))
 
 
 def drop_queued(work: ConversionState, queues: Sequence[Queue], names: Sequence[str]) -> None:
@@ -135,27 +140,42 @@ def drop_queued(work: ConversionState, queues: Sequence[Queue], names: Sequence[
             work.remark(
                 f"{', '.join(dropped)}: the samples from {queue.begin - work.begin:.4g} s to "
                 f"{queue.end - work.begin:.4g} s after the beginning had queued since "
-                f"{queue.last - work.begin:.4g} s; the vessel stands still over the gap and then "
-                f"moves too fast; they are omitted"
+                f"{queue.last - work.begin:.4g} s: {queue.evidence}; they are omitted"
             )
 
 
 def regularize_positions(work: ConversionState) -> None:
-    """Move positions to the times at which their sensor measured, if they were read late."""
+    """Correct positions that a program read late, where their sensor measures in a rhythm.
+
+    In a table the program wrote them into the rows of other sensors. There they are moved along the
+    track to the times of these rows: rows of their own would make a recording half as long again,
+    and a diagnosis as slow.
+
+    Args:
+        work: State of the conversion, which gets remarks.
+    """
     x, y = work.columns.get("x_m"), work.columns.get("y_m")
     if x is None or y is None or not np.array_equal(x.given.t, y.given.t):
         return
-    found = regular_times(x.given.t, x.given.values + 1j * y.given.values)
+    read = x.given.t
+    found = regular_times(read, x.given.values + 1j * y.given.values)
     if found is None:
         return
     t, period = found
-    shift = float(np.sqrt(np.mean((t - x.given.t) ** 2)))
+    shift = float(np.sqrt(np.mean((t - read) ** 2)))
+    in_rows = _are_in_rows_of_others(work, read)
+    how = "moved to the times of that rhythm"
+    if in_rows:
+        how = "moved along the track from the times of that rhythm to those of their rows"
     work.remark(
         f"x_m, y_m: the sensor measured every {period:.4g} s, but the program read it late; the "
-        f"samples are moved to the times of that rhythm, by {shift:.2g} s rms"
+        f"samples are {how}, by {shift:.2g} s rms"
     )
     for name, column in (("x_m", x), ("y_m", y)):
-        work.columns[name] = replace(column, given=Samples(t, column.given.values))
+        samples = Samples(t, column.given.values)
+        if in_rows:
+            samples = Samples(read, values_at_rows(read, t, column.given.values))
+        work.columns[name] = replace(column, given=samples)
 
 
 def drop_stale(work: ConversionState) -> None:
@@ -175,6 +195,15 @@ def drop_stale(work: ConversionState) -> None:
         )
         fresh = Samples(given.t[~stale], given.values[~stale])
         work.columns[name] = replace(column, given=fresh)
+
+
+def _are_in_rows_of_others(work: ConversionState, t: Array) -> bool:
+    """Whether most positions have the times of samples of another pose or rate."""
+    for name, column in work.columns.items():
+        if name in (*POSE, *RATES) and name not in PLACE and not column.held:
+            if np.isin(t, column.given.t).mean() > MOST_IN_ROWS:
+                return True
+    return False
 
 
 def _longest_stale(t: Array, stale: "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]") -> float:

@@ -15,6 +15,7 @@ from boatsim.diagnosis.output_error.fit import fit_to_free_runs
 from boatsim.diagnosis.output_error.search import OutputErrorSearch
 from boatsim.diagnosis.output_error.stage import (
     _better_of_two,
+    _further_starts,
     _with_corrected,
     contradicted_effects,
     fit_to_simulations,
@@ -24,10 +25,12 @@ from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.search.screening import add_effect
+from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
 
 WEAK_ASTERN = 0.4  # share of the thrust astern that is missing
+LIFT = 5.0  # kg, sway force per surge speed and yaw rate in some recordings
 ODD = 0.06  # m/s at which the damping is as large as the forces of unknown cause
 
 
@@ -237,3 +240,47 @@ def test_an_event_of_a_single_recording_is_not_called_an_added_effect() -> None:
     corrected = replace(retuned, effects=("described_1", "weak_reverse"))
     found = _with_corrected(replace(ranking, description=description), corrected, ())
     assert found.added == ("weak_reverse",)
+
+
+def test_a_search_also_starts_from_the_coefficients_that_free_runs_determine() -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    before = OutputErrorSearch(problem, retuned, held_out).model
+    term = DescribedForce(name="described_1", axis="sway", of=("sign_sway_speed",), coefficient=0.5)
+    set_placeholder_term(problem, "described_1", term, [*problem.recordings, *held_out])
+    filtered = replace(retuned, theta=1.5 * retuned.theta)  # a filter may be that wrong
+    filtered = add_effect(problem, filtered, "weak_reverse", {"astern_factor": 0.7})
+    filtered = add_effect(problem, filtered, "described_1", {"coefficient": 0.5})
+    whole, lean = _further_starts(problem, filtered, before, filtered.effects)
+    assert whole is filtered
+    assert lean.effects == ("weak_reverse",)
+    assert lean.value("weak_reverse", "astern_factor")[0] == 0.7
+    for f, x in zip(lean.free, lean.theta, strict=True):
+        if f.relative:
+            assert x == before.values()[f.effect, f.name]
+    # there is a single start where the filter selected nothing, and none beside the same effects
+    assert _further_starts(problem, before, before, ()) == []
+    assert len(_further_starts(problem, before, before, ("weak_reverse",))) == 2
+
+
+def test_a_formula_that_holds_for_the_fitted_recordings_alone_is_left_out() -> None:
+    def lifted(t: float, y: Array, command: Array) -> Array:
+        lift = np.array([0.0, LIFT * y[3] * y[5], 0.0])
+        return np.asarray(odd_and_weak_astern(t, y, command) + lift)
+
+    problem, _ = laid(*(sail(f"fitted {i}", i, lifted)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    ranking = select_and_rank_candidates(problem, ("prop_walk",), held_out)
+    assert ranking.has_unexplained_force_or_cause
+    term = DescribedForce(
+        name="described_1", axis="sway", of=("surge_speed", "yaw_rate"), coefficient=LIFT
+    )
+    set_placeholder_term(problem, "described_1", term, [*problem.recordings, *held_out])
+    best = add_effect(
+        problem, ranking.recalibrated, "weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN}
+    )
+    best = add_effect(problem, best, "described_1", {"coefficient": LIFT})
+    described = replace(ranking, best=best)
+    found = fit_to_simulations(problem, described, (), held_out, whole_budget(problem))
+    assert found.best.effects == ("weak_reverse",)
+    assert error(problem, found.best, held_out) < error(problem, best, held_out)

@@ -698,6 +698,57 @@ def test_effects_come_before_formulas_and_events_are_counted(effects, described,
     assert verdict_sentences(answer, MEANT) == text
 
 
+def test_what_held_out_recordings_confirm_comes_before_a_formula_that_they_do_not() -> None:
+    possible = {"words": "waves push", "in_patch": True, "confirmed": True}
+    answer = {
+        "verdict": "described",
+        "effects": [],
+        "where": {"axes": {}},
+        "candidates": [{"name": "wind"}],
+        "unknown": {"flag": True, "rest": {"sway": {"rms": 0.5, "sd": 0.1, "unit": "N"}}},
+        "described": [UNCONFIRMED],
+        "fit": {"held_out": ["run_3"]},
+        "also_possible": [possible, possible | {"words": "no", "confirmed": False}],
+    }
+    assert verdict_sentences(answer, MEANT) == (
+        "A force is missing that no candidate effect explains (0.50 N rms in sway). The corrected "
+        "vessel contains “waves push”: held-out recordings confirm it, but it may stand in for "
+        "another cause. A formula describes a side force in the fitted recordings, but held-out "
+        "recordings do not confirm it."
+    )
+
+
+def test_two_possible_effects_that_balance_each_other_are_stated_together() -> None:
+    possible = {"probability": 0.1, "gain_nats": 40.0, "in_patch": True, "confirmed": True}
+    stiffness = {"value": 50.0, "sd": 5.0, "unit": "N/m"}
+    spring = possible | {
+        "name": "ground_spring",
+        "words": "a spring pulls",
+        "parameters": {"stiffness_east": stiffness},
+        "together_with": "wave_drift",
+    }
+    drift = possible | {
+        "name": "wave_drift",
+        "words": "waves push",
+        "together_with": "ground_spring",
+    }
+    answer = {
+        "verdict": "unknown",
+        "effects": [],
+        "where": {"axes": {}},
+        "candidates": [{"name": "wind"}],
+        "unknown": {"flag": True, "rest": {"sway": {"rms": 0.5, "sd": 0.1, "unit": "N"}}},
+        "described": [],
+        "also_possible": [spring, drift],
+    }
+    together = (
+        "Simulations require two effects together: a spring pulls (stiffness east 50.0 ± 5.0 N/m)"
+    )
+    assert together in verdict_sentences(answer, MEANT)
+    answer["also_possible"] = [spring, drift | {"confirmed": False}]
+    assert "together" not in verdict_sentences(answer, MEANT)
+
+
 @pytest.mark.parametrize(
     ("verdict", "begins"),
     [

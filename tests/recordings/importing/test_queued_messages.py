@@ -46,9 +46,10 @@ def log(queue: bool = True, noise: float = 0.03, seed: int = 1) -> Recording:
 @pytest.mark.parametrize("seed", range(5))
 def test_the_queue_is_found_from_its_stall_to_its_end(seed: int) -> None:
     run = log(seed=seed)
-    ((last, begin, end),) = queued_positions(run.t, run["x_m"], run["y_m"])
-    assert last == pytest.approx(STALL, abs=0.3) and begin == pytest.approx(STALL + GAP, abs=0.3)
-    assert end == pytest.approx(EMPTY, abs=0.7)
+    (queue,) = queued_positions(run.t, run["x_m"], run["y_m"])
+    assert queue.last == pytest.approx(STALL, abs=0.3)
+    assert queue.begin == pytest.approx(STALL + GAP, abs=0.3)
+    assert queue.end == pytest.approx(EMPTY, abs=0.7)
 
 
 def test_poses_that_had_queued_are_dropped_and_orders_stay() -> None:
@@ -136,3 +137,92 @@ def test_an_import_omits_what_had_queued_and_says_so() -> None:
             assert gone != bool(((known > run.t[late][0]) & (known < run.t[late][-1])).any())
         remarks = " ".join(text for text in found.remarks if "had queued" in text)
         assert "x_m, y_m" in remarks and ("psi_rad" in remarks) == queued
+
+
+PERIOD, POLL = 0.2, 0.11  # [s] of the sensor, and of a program that reads one message at a time
+WAIT, STORED = 6.0, 10  # [s] until the program reads, and messages that its link stores until then
+
+
+def polled(seconds: float = 60.0, stored: int = STORED, first: bool = True) -> Recording:
+    """Log of a program that waits, and then reads the stored messages and the new ones in turn.
+
+    Args:
+        seconds: Duration of the log.
+        stored: Number of messages that the link stores while the program waits.
+        first: Whether the program has a first fix before it waits.
+    """
+    rows = np.append(0.0, WAIT + POLL * np.arange(round((seconds - WAIT) / POLL)))
+    sent = np.empty(len(rows))
+    following = WAIT - stored * PERIOD  # when the next message that is not read yet was sent
+    sent[0] = 0.0
+    for i, t in enumerate(rows[1:], 1):
+        sent[i] = sent[i - 1]
+        if following <= t:
+            sent[i] = following
+            following += PERIOD
+    noise = np.random.default_rng(0)
+    signals = {name: value[:] for name, value in circle(sent).items()}
+    fresh = np.append(True, np.diff(sent) > 0.0)
+    for name in signals:
+        error = np.where(fresh, 0.005 * noise.standard_normal(len(rows)), np.nan)
+        last = np.maximum.accumulate(np.where(fresh, np.arange(len(rows)), 0))
+        signals[name] = signals[name] + error[last]
+    if not first:
+        signals["x_m"][0] = signals["y_m"][0] = np.nan
+    signals["n_port_radps"] = signals["n_starboard_radps"] = np.full(len(rows), 40.0)
+    return Recording("run", rows, signals)
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_queue_with_which_a_log_begins_is_found_by_the_number_of_its_messages(
+    first: bool,
+) -> None:
+    """It is empty after the time in which reading gains what was stored: 10 x 0.2 s."""
+    run = polled(first=first)
+    (queue,) = queued_positions(run.t, run["x_m"], run["y_m"])
+    empty = WAIT + POLL * STORED * PERIOD / (PERIOD - POLL)
+    assert queue.last == 0.0 and queue.begin == WAIT
+    assert queue.end == pytest.approx(empty, abs=3.0 * POLL)
+    assert queue.late == pytest.approx(STORED * PERIOD, abs=2.0 * PERIOD)
+
+
+def test_a_log_that_begins_with_a_gap_without_stored_messages_has_no_queue() -> None:
+    for stored in (0, 1):
+        run = polled(stored=stored)
+        assert not list(queued_positions(run.t, run["x_m"], run["y_m"]))
+
+
+def test_a_sensor_that_becomes_faster_after_a_gap_has_no_queue() -> None:
+    slow, fast = np.arange(0.0, 20.0, 0.4), np.arange(26.0, 40.0, 0.2)
+    t = np.concatenate([slow, fast])
+    way = circle(t)
+    assert not list(queued_positions(t, way["x_m"], way["y_m"]))
+
+
+def test_more_messages_than_fit_into_the_gap_are_no_queue() -> None:
+    """A sensor that sends faster for 10 s after a gap of 1 s stored 10 s of messages in none."""
+    t = np.concatenate([[0.0], 1.0 + 0.1 * np.arange(100), 11.0 + 0.2 * np.arange(200)])
+    way = circle(t)
+    assert not list(queued_positions(t, way["x_m"], way["y_m"]))
+
+
+def test_an_import_puts_the_positions_of_a_log_that_begins_with_a_queue_to_their_times() -> None:
+    """With the stored messages their rhythm is too fast, and a boat is up to 0.5 m off its track.
+
+    A program that polls reads a message half a period late on average.
+    """
+    run = polled(seconds=36.0)
+    signals = {name: Signal(run.t, run[name]) for name in run.signals}
+    names = ("x_m", "y_m", "psi_rad", "n_port_radps", "n_starboard_radps")
+    table = {"vessel": "otter", "columns": {name: name for name in names}}
+    found = convert_log(Log(Path("log.csv"), signals), parse_map(table, "map.toml"), "map.toml")
+    assert any("the first one is" in text and "s old" in text for text in found.remarks)
+    known = np.isfinite(found["x_m"]) & (found.t > 0.5 * WAIT)  # without the fix before the stall
+    t = found.t[known]
+    assert t[0] > WAIT + 0.5 * POLL * STORED * PERIOD / (PERIOD - POLL)
+    radius = SPEED / YAW_RATE
+    angle = np.unwrap(np.arctan2(found["x_m"][known], -found["y_m"][known]))
+    late = t - angle / YAW_RATE  # [s] of the positions behind their times
+    assert np.hypot(found["x_m"][known], found["y_m"][known]) == pytest.approx(radius, abs=0.05)
+    assert 0.0 < late.mean() < POLL
+    assert np.abs(late).max() < 1.2 * PERIOD

@@ -1,0 +1,144 @@
+"""Finds a spring to the ground together with the force that it balances.
+
+A steady force moves a vessel away unless something holds it, and a spring holds nothing unless a
+force acts. Neither makes simulations better without the other one, so that a search which adds one
+effect at a time finds neither. Both act slowly. A Kalman filter ascribes a slow force to its latent
+force, so that the pair gains little of the evidence that faster forces explain. Therefore free runs
+take part in the decision.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from boatsim.diagnosis.candidates import name_without_prefixes
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.fit import converge, remove_effect
+from boatsim.diagnosis.output_error.search import OutputErrorSearch, with_coefficients_of_file
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget
+from boatsim.diagnosis.search.evidence import required_gain
+from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
+from boatsim.diagnosis.search.ranking import Ranking, with_further_effects
+from boatsim.diagnosis.search.screening import add_effect
+from boatsim.physics.base import Effect, Force
+from boatsim.physics.groups import group_of
+
+
+def add_balanced_forces(
+    problem: Problem,
+    ranking: Ranking,
+    candidates: Sequence[str],
+    held_out: Sequence[MappedRecording],
+) -> Ranking:
+    """Add a spring to the ground and the force that it balances, where the recordings require both.
+
+    Two criteria must be met. By the evidence of the Kalman filter the pair gains twice what a
+    single effect needs, and each effect of the pair, added to the other one, what it needs. That
+    evidence may be small relative to what the other effects explain, so that the pair could only
+    correct the shape of their laws (`select.slight_share`). Therefore free runs over the fitted and
+    over the held-out recordings must be more probable with the pair, too, and more so than with
+    either effect alone.
+
+    Args:
+        problem: The estimation problem: recordings, vessel model, candidate effects and priors.
+        ranking: Result of the selection, which adds effects one by one.
+        candidates: Names of the candidates that are tested.
+        held_out: Held-out recordings, which no fit has used.
+
+    Returns:
+        The ranking with both effects; the same one if no pair is required, or if no candidate is a
+        spring to the ground.
+    """
+    best = ranking.best
+    addable = _addable_forces(problem, best, candidates)
+    springs = [name for name in addable if is_spring_to_ground(problem, name)]
+    room = problem.config.select.most_effects - len(best.effects)
+    if not springs or not held_out or room < 2 or not ranking.has_unexplained_force_or_cause:
+        return ranking
+    budget = SearchBudget(problem.work_count, problem.config.simulate.pair_budget)
+    search = OutputErrorSearch(problem, best, held_out, budget=budget)
+    search.start_from(with_coefficients_of_file(best))
+    search.drop_effects()
+    required = required_gain(len(candidates), problem.config.select)
+    others = [name for name in addable if name not in springs]
+    for spring in springs:
+        pair = search.most_probable_pair(spring, others)
+        if pair is not None:
+            added = pair.effects[-2:]
+            both = _fit_of_filter(problem, best, pair, added)
+            without = _fits_without_each(problem, both)
+            least = both.evidence - required
+            needed = all(without[name].evidence < least for name in added)
+            if needed and both.evidence > best.evidence + 2.0 * required:
+                named = _statistics(problem, both, without, ranking.named)
+                found = with_further_effects(problem, ranking, both, named, without)
+                return replace(found, balanced=tuple(added))
+    return ranking
+
+
+def is_spring_to_ground(problem: Problem, name: str) -> bool:
+    """Whether a candidate is a linear spring between the vessel and the ground.
+
+    Args:
+        problem: The estimation problem with the vessel and its candidates.
+        name: Name of the candidate.
+    """
+    effect = problem.candidates[name]
+    if not isinstance(effect, Force) or not effect.tied_to:
+        return False
+    dof = problem.program.vessel.dof
+    fitted = [p for p in type(effect).params().values() if p.fit and p.axis in dof]
+    return bool(fitted) and all(p.calibrates == "restoring" for p in fitted)
+
+
+def _is_force(effect: Effect) -> bool:
+    """Whether an effect is a deterministic force that is no placeholder of a formula."""
+    kind = type(effect)
+    return isinstance(effect, Force) and not (kind.random or kind.described)
+
+
+def _addable_forces(problem: Problem, best: Fit, candidates: Sequence[str]) -> list[str]:
+    """Forces that act in all recordings and that a fit does not have."""
+    present = set(map(name_without_prefixes, best.effects))
+    found = []
+    for name in candidates:
+        absent = name_without_prefixes(name) not in present and not group_of(name)
+        if absent and _is_force(problem.candidates[name]):
+            found.append(name)
+    return found
+
+
+def _fit_of_filter(problem: Problem, best: Fit, pair: Fit, added: Sequence[str]) -> Fit:
+    """The converged fit of the Kalman filter with the pair in addition to the selected effects.
+
+    It starts from the sizes of the pair in the free runs.
+    """
+    start = best
+    for name in added:
+        sizes = {parameter: x for (effect, parameter), x in pair.values().items() if effect == name}
+        start = add_effect(problem, start, name, sizes)
+    return converge(problem, start)
+
+
+def _fits_without_each(problem: Problem, both: Fit) -> dict[str, Fit]:
+    """Converged fits without one of the effects of a fit, by its name."""
+    return {name: converge(problem, remove_effect(problem, both, name)) for name in both.effects}
+
+
+def _statistics(
+    problem: Problem,
+    both: Fit,
+    without: dict[str, Fit],
+    named: Sequence[IdentifiedEffect],
+) -> tuple[IdentifiedEffect, ...]:
+    """Statistics of all effects of a fit; those that were known keep their rivals."""
+    known = {one.name: one for one in named}
+    found = []
+    for name in both.effects:
+        if name in known:
+            one = known[name]
+            change = float(both.evidence - without[name].evidence) - one.gain
+            found.append(replace(one, gain=one.gain + change, shared=one.shared + change))
+        else:
+            found.append(compare_rivals(name, both, without[name], {}, problem.config.select))
+    return tuple(found)
