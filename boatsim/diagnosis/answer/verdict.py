@@ -8,12 +8,14 @@ from boatsim.diagnosis.answer.findings import setting_of
 from boatsim.diagnosis.answer.formulas import doubt, is_event, is_stated, states_any
 from boatsim.diagnosis.answer.refined_numbers import main_refinement
 from boatsim.diagnosis.answer.schema import (
+    AddedEntry,
     Answer,
     DescribedEntry,
     EffectEntry,
     ParameterEntry,
 )
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
+from boatsim.physics.groups import without_group
 from boatsim.view.formatting import (
     capitalize,
     format_parameter,
@@ -173,13 +175,26 @@ def _balanced_effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
 
 def _added(answer: Answer) -> list[str]:
     """Return the statement on effects that only make simulations better."""
-    names = [name_in_words(entry["name"]) for entry in answer.get("added", [])]
+    names = list(map(_added_name, answer.get("added", [])))
     if not names:
         return []
     reason = "simulations get better by them, but they are not shown to be causes"
     if len(names) == 1:
         reason = "simulations get better by it, but it is not shown to be a cause"
     return [f"for predictions, the corrected vessel also has {join_words(names)}: {reason}"]
+
+
+def _added_name(entry: AddedEntry) -> str:
+    """Return the name of an added effect in words, with its group, and whether it is at a bound.
+
+    A value at the bound of its plausible range shows that the effect stands in for something else.
+    """
+    name = name_in_words(without_group(entry["name"]))
+    if group := entry.get("group"):
+        name = f"{name} in group {group}"
+    if any(p.get("at_bound") for p in entry["parameters"].values()):
+        name = f"{name} (at the bound of its range)"
+    return name
 
 
 def reason_none_tested(answer: Answer) -> str:

@@ -170,6 +170,19 @@ def test_effects_added_for_predictions_are_listed_and_not_called_causes(
         assert "0.610 ± 0.040" in page
 
 
+def test_an_added_effect_is_stated_with_its_group_and_its_bound() -> None:
+    added: Any = {
+        "name": "camera_scale@5 March",
+        "group": "5 March",
+        "kind": "measurement",
+        "words": "the positions are scaled",
+        "parameters": {"x_fraction": {"value": -0.4, "sd": 0.02, "unit": "", "at_bound": True}},
+    }
+    answer = planar().answer | {"added": [added]}
+    expected = "camera scale in group 5 March (at the bound of its range): simulations get better"
+    assert expected in verdict_sentences(answer)
+
+
 def test_a_possible_effect_is_stated_with_a_formula_or_without_if_held_out_recordings_confirm_it() -> (
     None
 ):
