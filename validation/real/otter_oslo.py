@@ -19,7 +19,7 @@ from pathlib import Path
 
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
-from validation.real.common import DEG, OUT, RECORDINGS, out_option, print_table, runs_of
+from validation.real.common import DEG, OUT, RECORDINGS, out_option, runs_of
 from validation.real.figures import (
     DISTANCE,
     SourceWindows,
@@ -97,24 +97,23 @@ def files_of_form(form: str, names: Sequence[str], day: str) -> dict[str, Path]:
     """Return the recordings of a form by run; those of the published files are imported."""
     if form == "clean":
         return {name: RECORDINGS / NAME / "runs_clean" / f"{name}.csv" for name in names}
-    found, rows = {}, []
+    found = {}
+    print(f"{day}: files as published, imported by the proposed map; what the import repaired:")
     for name in names:
         log = RECORDINGS / NAME / "runs" / f"{name}.csv"
         found[name], remarks = imported(log, OWNERS_LINES.get(day, ()))
-        rows.append([name, f"{remarks}"])
-    print_table(
-        f"{day}: files as published, imported by the proposed map", ("run", "remarks"), rows
-    )
+        for remark in remarks:
+            print(f"  {name}: {remark}")
     for line in OWNERS_LINES.get(day, ()):
         print(f"  line completed by the owner: {line}")
     return found
 
 
-def imported(log: Path, lines: Sequence[str]) -> tuple[Path, int]:
+def imported(log: Path, lines: Sequence[str]) -> tuple[Path, list[str]]:
     """Import a log by the proposed map, in which the owner replaces lines of some columns.
 
     Returns:
-        The recording, and the number of remarks of the import.
+        The recording, and the remarks of the import.
     """
     folder = OUT / NAME / "imported"
     folder.mkdir(parents=True, exist_ok=True)
@@ -128,7 +127,8 @@ def imported(log: Path, lines: Sequence[str]) -> tuple[Path, int]:
     notes = io.StringIO()
     with redirect_stdout(io.StringIO()), redirect_stderr(notes):
         import_log([log], out, map, None, VESSEL, [])
-    return out, notes.getvalue().count("note: ")
+    remarks = notes.getvalue().split("note: ")[1:]
+    return out, [" ".join(remark.split()).removeprefix(f"{log}: ") for remark in remarks]
 
 
 def propose(log: Path, map: Path) -> None:
