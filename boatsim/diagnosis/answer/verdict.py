@@ -13,6 +13,7 @@ from boatsim.diagnosis.answer.schema import (
     DescribedEntry,
     EffectEntry,
     ParameterEntry,
+    StructureEntry,
 )
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.physics.groups import without_group
@@ -40,6 +41,7 @@ NOTHING_MISSING = (
     "noise."
 )
 REFITTED = "with refitted coefficients, "
+WITH_NOTHING = "nothing"  # what a constant force varies with, in diagnosis.json
 # end of the description of a signed parameter -> words for its negative values
 OPPOSITES = {
     "positive ahead": "astern",
@@ -241,7 +243,7 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
             f"a force is missing that no candidate effect explains{_unexplained_rms(answer)}"
         )
         if found := answer["unknown"].get("structure"):
-            statements.append(f"in {found['axis']} it varies with {found['goes_with']}")
+            statements.append(f"in {found['axis']} it {structure_clause(found)}")
     physics: list[str] = []
     probable: list[str] = []
     measured: list[str] = []
@@ -272,6 +274,17 @@ def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
             )
         statements += ratio_sentences(effects_of_kind(answer, "measurement"))
     return statements
+
+
+def structure_clause(structure: StructureEntry) -> str:
+    """Return what an unexplained force varies with, as the end of a clause about it.
+
+    Args:
+        structure: Entry `unknown.structure` of diagnosis.json.
+    """
+    if structure["goes_with"].startswith(WITH_NOTHING):
+        return "is constant"
+    return f"varies with {structure['goes_with']}"
 
 
 def ratio_sentences(effects: Sequence[EffectEntry]) -> list[str]:

@@ -20,6 +20,7 @@ from boatsim.diagnosis.answer.verdict import (
     held_out_only_statement,
     probability_with_look_alikes,
     ratio_sentences,
+    structure_clause,
 )
 from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import effect_sentences
@@ -247,7 +248,7 @@ def _structure(s: StructureEntry) -> str:
     if s["p_value"] >= 1e-6:
         often = format_number(1.0 / s["p_value"], 1)
     return (
-        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. By chance, any of "
+        f"The unexplained force in {s['axis']} {structure_clause(s)}. By chance, any of "
         f"the {s['tried']} quantities tested would show this in one of {often} diagnoses."
     )
 

@@ -17,6 +17,7 @@ from boatsim.diagnosis.answer.findings import Findings, FreeRun, MissingForceCur
 from boatsim.diagnosis.answer.schema import Answer, IntervalEntry
 from boatsim.diagnosis.answer.verdict import NONE_TESTED, verdict_sentences
 from boatsim.diagnosis.description import Curve, FittedTerm
+from boatsim.diagnosis.locate.residual_structure import CONSTANT
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.figures import part_with_largest_error
 from boatsim.diagnosis.report.force_section import missing_force_section
@@ -716,6 +717,27 @@ def test_what_held_out_recordings_confirm_comes_before_a_formula_that_they_do_no
         "another cause. A formula describes a side force in the fitted recordings, but held-out "
         "recordings do not confirm it."
     )
+
+
+def test_an_unexplained_force_that_varies_with_nothing_is_called_constant() -> None:
+    structure = {
+        "axis": "heave",
+        "goes_with": CONSTANT,
+        "gain_nats": 9.0,
+        "p_value": 1e-3,
+        "tried": 5,
+    }
+    answer = {
+        "verdict": "unknown",
+        "effects": [],
+        "where": {"axes": {"heave": {"rms": 7.1, "sd": 0.1, "unit": "N"}}},
+        "candidates": [{"name": "wind"}],
+        "unknown": {"flag": True, "structure": structure},
+        "described": [],
+    }
+    assert verdict_sentences(answer, MEANT).endswith(" In heave it is constant.")
+    answer["unknown"]["structure"] = structure | {"goes_with": "the heading"}
+    assert verdict_sentences(answer, MEANT).endswith(" In heave it varies with the heading.")
 
 
 def test_two_possible_effects_that_balance_each_other_are_stated_together() -> None:
