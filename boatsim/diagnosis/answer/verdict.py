@@ -132,9 +132,10 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
 def _confirmed_possible(answer: Answer) -> list[str]:
     """Return the statement on effects that only held-out recordings support.
 
-    None is repeated that is stated as what describes an unknown cause best.
+    They are stated where a force remains unexplained; none is repeated that is stated as what
+    describes an unknown cause best.
     """
-    if _states_stand_ins(answer):
+    if _states_stand_ins(answer) or not answer["unknown"]["flag"]:
         return []
     found = []
     for entry in answer.get("also_possible", []):

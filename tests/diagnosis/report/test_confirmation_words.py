@@ -203,17 +203,19 @@ def test_a_possible_effect_is_stated_with_a_formula_or_without_if_held_out_recor
         "confirmed": True,
     }
     stated = "The corrected vessel contains “the hull touches a quay or another fixed wall”"
-    for entry, described, expected in (
-        (possible, [law], True),
-        ({**possible, "confirmed": False}, [law], False),
-        ({**possible, "in_patch": False}, [law], False),
-        (possible, [], True),
+    for entry, described, unexplained, expected in (
+        (possible, [law], True, True),
+        ({**possible, "confirmed": False}, [law], True, False),
+        ({**possible, "in_patch": False}, [law], True, False),
+        (possible, [], True, True),
+        (possible, [], False, False),
     ):
         answer: Answer = {
             **findings.answer,
             "described": described,
             "also_possible": [entry],
             "added": [],
+            "unknown": {**findings.answer["unknown"], "flag": unexplained},
         }
         assert (stated in verdict_sentences(answer)) == expected
 
