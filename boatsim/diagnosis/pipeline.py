@@ -252,10 +252,9 @@ def _fit_and_select(
         question, findings = kept, (*findings, *loaded.findings[len(given) :])
         report("selecting again without the pushes", SELECTING[1])
         selection = select_candidates(question, fit_baseline_models(question), loaded)
-    report("looking for forces that balance each other", SELECTING[1])
-    selection = add_forces_that_balance(question, selection)
-    decision = decide_causes(question, selection)
     report_last = report_part_of(report, SELECTING[1], SELECTING[1])
+    selection = add_forces_that_balance(question, selection, report_last)
+    decision = decide_causes(question, selection)
     loaded, question, decision = try_last_candidates(loaded, question, decision, report_last)
     return _Selected(loaded, question, findings, decision)
 
@@ -519,7 +518,7 @@ def try_last_candidates(
     if gain < config.select.last_gain:
         return loaded, question, decision
     selection = select_candidates(again, base, wider, report)
-    other = decide_causes(again, add_forces_that_balance(again, selection))
+    other = decide_causes(again, add_forces_that_balance(again, selection, report))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:
         return wider, again, other
@@ -549,15 +548,18 @@ def keep_undetermined_coefficients(question: Question, decision: Decision) -> De
     return replace(decision, ranking=replace(ranking, best=best))
 
 
-def add_forces_that_balance(question: Question, selection: Selection) -> Selection:
+def add_forces_that_balance(
+    question: Question, selection: Selection, report: Report = ignore_progress
+) -> Selection:
     """Add a spring to the ground with the force that it balances, where recordings require both.
 
     Args:
         question: Candidates and held-out recordings.
         selection: Selected effects.
+        report: Receives the progress.
     """
     problem, ranking = selection.problem, selection.ranking
-    found = add_balanced_forces(problem, ranking, question.candidates, question.held_out)
+    found = add_balanced_forces(problem, ranking, question.candidates, question.held_out, report)
     return replace(selection, ranking=found)
 
 

@@ -22,6 +22,7 @@ from boatsim.diagnosis.search.ranking import Ranking, with_further_effects
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect, Force
 from boatsim.physics.groups import group_of
+from boatsim.progress import Report, ignore_progress
 
 
 def add_balanced_forces(
@@ -29,6 +30,7 @@ def add_balanced_forces(
     ranking: Ranking,
     candidates: Sequence[str],
     held_out: Sequence[MappedRecording],
+    report: Report = ignore_progress,
 ) -> Ranking:
     """Add a spring to the ground and the force that it balances, where the recordings require both.
 
@@ -44,6 +46,7 @@ def add_balanced_forces(
         ranking: Result of the selection, which adds effects one by one.
         candidates: Names of the candidates that are tested.
         held_out: Held-out recordings, which no fit has used.
+        report: Receives the progress.
 
     Returns:
         The ranking with both effects; the same one if no pair is required, or if no candidate is a
@@ -55,6 +58,7 @@ def add_balanced_forces(
     room = problem.config.select.most_effects - len(best.effects)
     if not springs or not held_out or room < 2 or not ranking.has_unexplained_force_or_cause:
         return ranking
+    report("looking for forces that balance each other", 0.0)
     budget = SearchBudget(problem.work_count, problem.config.simulate.pair_budget)
     search = OutputErrorSearch(problem, best, held_out, budget=budget)
     search.start_from(with_coefficients_of_file(best))
