@@ -418,19 +418,16 @@ def _formulas(answer: Answer, effects_precede: bool) -> tuple[list[str], list[st
 def _uncertain_formulas(answer: Answer, formulas: Sequence[DescribedEntry]) -> list[str]:
     """Return statements on formulas that are not certain: what they describe, and the doubt."""
     any_held_out = bool(answer.get("fit", {}).get("held_out"))
-    forces = dict[str, list[str]]()
-    reasons = dict[str, DescribedEntry]()
-    for formula in formulas:
-        reason = doubt(formula, any_held_out)
-        reasons[reason] = formula
-        forces.setdefault(reason, []).append(axis_force_words(formula["axis"]))
     found = []
-    for reason, described in forces.items():
-        several = len(described) > 1
+    for confirmed in (False, True):
+        alike = [formula for formula in formulas if formula["carries_over"] == confirmed]
+        if not alike:
+            continue
+        several = len(alike) > 1
         subject = "formulas describe" if several else "a formula describes"
-        clause = doubt(reasons[reason], any_held_out, several=several)
-        what = join_words(list(dict.fromkeys(described)))
-        found.append(f"{subject} {what} in the fitted recordings, but {clause}")
+        forces = dict.fromkeys(axis_force_words(formula["axis"]) for formula in alike)
+        reason = doubt(alike[0], any_held_out, several=several)
+        found.append(f"{subject} {join_words(list(forces))} in the fitted recordings, but {reason}")
     return found
 
 

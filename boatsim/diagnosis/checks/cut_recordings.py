@@ -1,9 +1,11 @@
 """Cuts intervals out of the recordings of a diagnosis, which become several recordings."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.recordings.table import FEWEST_ROWS, Recording
 
 Interval = tuple[float, float]  # first and last time [s]
@@ -33,3 +35,31 @@ def parts_outside_intervals(recording: Recording, intervals: Sequence[Interval])
             piece = recording.between(float(t[0]), float(t[-1]))
             pieces.append(replace(piece, name=f"{whole} ({t[0]:.3g} to {t[-1]:.3g} s)"))
     return pieces
+
+
+def cut_intervals(
+    loaded: LoadedRecordings,
+    intervals_of: Callable[[Recording], Sequence[Interval]],
+    finding_of: Callable[[Recording, Sequence[Interval]], Finding],
+) -> LoadedRecordings:
+    """Return the recordings of a diagnosis without some intervals, with a finding for each.
+
+    A recording of which no part would be long enough for a filter is returned as it is.
+
+    Args:
+        loaded: The recordings.
+        intervals_of: Function that returns the intervals of a recording.
+        finding_of: Function that returns the finding about a recording and its intervals.
+    """
+    findings = list(loaded.findings)
+    parts: list[list[Recording]] = []
+    for recordings in (loaded.fitted, loaded.held_out):
+        kept: list[Recording] = []
+        for recording in recordings:
+            intervals = intervals_of(recording)
+            pieces = parts_outside_intervals(recording, intervals)
+            kept += pieces or [recording]
+            if intervals and pieces:
+                findings.append(finding_of(recording, intervals))
+        parts.append(kept)
+    return replace(loaded, fitted=parts[0], held_out=parts[1], findings=findings)

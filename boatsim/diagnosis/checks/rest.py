@@ -5,13 +5,12 @@ A law of friction that depends on the speed alone would have them explained by o
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.checks.cut_recordings import Interval, parts_outside_intervals
+from boatsim.diagnosis.checks.cut_recordings import Interval, cut_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DiagnosisConfig
 from boatsim.diagnosis.loading import LoadedRecordings
@@ -33,21 +32,14 @@ def cut_intervals_at_rest(loaded: LoadedRecordings, config: DiagnosisConfig) -> 
         loaded: The recordings.
         config: Settings of the diagnosis.
     """
-    findings = list(loaded.findings)
-    parts: list[list[Recording]] = []
-    for recordings in (loaded.fitted, loaded.held_out):
-        kept: list[Recording] = []
-        for recording in recordings:
-            vessel = loaded.vessels[recording.path]
-            intervals: list[Interval] = []
-            if is_guided(vessel, recording):
-                intervals = intervals_at_rest(recording, vessel, config)
-            pieces = parts_outside_intervals(recording, intervals)
-            kept += pieces or [recording]
-            if intervals and pieces:
-                findings.append(rest_finding(recording, intervals))
-        parts.append(kept)
-    return replace(loaded, fitted=parts[0], held_out=parts[1], findings=findings)
+
+    def intervals_of(recording: Recording) -> list[Interval]:
+        vessel = loaded.vessels[recording.path]
+        if not is_guided(vessel, recording):
+            return []
+        return intervals_at_rest(recording, vessel, config)
+
+    return cut_intervals(loaded, intervals_of, rest_finding)
 
 
 def is_guided(vessel: Vessel, recording: Recording) -> bool:

@@ -6,11 +6,10 @@ fit of the whole recording.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.checks.cut_recordings import Interval, parts_outside_intervals
+from boatsim.diagnosis.checks.cut_recordings import Interval, cut_intervals
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.holes import rows_before_holes
 from boatsim.diagnosis.config import DiagnosisConfig
@@ -29,18 +28,11 @@ def cut_unmeasured_times(loaded: LoadedRecordings, config: DiagnosisConfig) -> L
         loaded: The recordings, cleaned.
         config: Settings of the diagnosis; `checks.hole_duration` is the longest time that stays.
     """
-    findings = list(loaded.findings)
-    parts: list[list[Recording]] = []
-    for recordings in (loaded.fitted, loaded.held_out):
-        kept: list[Recording] = []
-        for recording in recordings:
-            intervals = unmeasured_times(recording, loaded.vessels[recording.path], config)
-            pieces = parts_outside_intervals(recording, intervals)
-            kept += pieces or [recording]
-            if intervals and pieces:
-                findings.append(_finding(recording, intervals))
-        parts.append(kept)
-    return replace(loaded, fitted=parts[0], held_out=parts[1], findings=findings)
+
+    def intervals_of(recording: Recording) -> list[Interval]:
+        return unmeasured_times(recording, loaded.vessels[recording.path], config)
+
+    return cut_intervals(loaded, intervals_of, _finding)
 
 
 def unmeasured_times(
