@@ -27,6 +27,13 @@ class SimulateConfig:
         "ten minutes of CPU.",
         low=1,
     )
+    unsure_budget: int = setting(
+        300_000_000,
+        "steps x dof",
+        "Work of the search without those stated effects that are only probably causes. It takes "
+        "about a minute of CPU.",
+        low=1,
+    )
     clear_gain: float = setting(
         10.0,
         "nats",

@@ -36,10 +36,11 @@ def fit_to_simulations(
 
     A Kalman filter ascribes such a force to a disturbance, so that it finds coefficients and
     effects which explain single steps, but may simulate badly. Parameters of effects that are
-    stated as causes keep their values, unless free runs found these effects; an effect that
-    simulations contradict is only possible. Candidates are added that make simulations better,
-    as a description. Each vessel is replaced only if it predicts held-out recordings clearly
-    better.
+    stated as causes keep their values, unless free runs found these effects. An effect that
+    simulations contradict is only possible, and so is one that is only probably a cause where a
+    search without it finds a vessel that predicts clearly better. Candidates are added that make
+    simulations better, as a description. Each vessel is replaced only if it predicts held-out
+    recordings clearly better.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -80,6 +81,12 @@ def fit_to_simulations(
         search.budget = budget
         search.add_effects(candidates)
     corrected = search.model
+    unsure = _unsure_effects(problem, ranking, kept)
+    if unsure:
+        sure = [name for name in kept if name not in unsure]
+        start = _with_retuned_coefficients(problem, ranking.best, sure, retuned)
+        corrected = _search_without_unsure(problem, corrected, start, candidates, held_out)
+        contradicted += tuple(name for name in unsure if name not in corrected.effects)
     found = ranking
     if better:
         found = _with_retuned(problem, ranking, retuned, held_out)
@@ -117,6 +124,43 @@ def contradicted_effects(
     return tuple(found)
 
 
+def _unsure_effects(problem: Problem, ranking: Ranking, stated: Sequence[str]) -> list[str]:
+    """Names of the stated effects that are only probably causes."""
+    sure = problem.config.decide.sure_probability
+    return [one.name for one in ranking.named if one.name in stated and one.probability < sure]
+
+
+def _search_without_unsure(
+    problem: Problem,
+    corrected: Fit,
+    start: Fit,
+    candidates: Sequence[str],
+    held_out: Sequence[MappedRecording],
+) -> Fit:
+    """The vessel of a search that may give up effects which are only probably causes.
+
+    Such an effect keeps the parameters of the filter, and leaves little for others to improve that
+    it stands in for.
+
+    Args:
+        problem: The estimation problem.
+        corrected: The vessel with these effects.
+        start: The vessel without them.
+        candidates: Names of the candidates that may be added, these effects included.
+        held_out: Held-out recordings, at least one.
+
+    Returns:
+        The vessel that was found from the start, if it predicts held-out recordings clearly better;
+        else the one with these effects.
+    """
+    budget = SearchBudget(problem.work_count, problem.config.simulate.unsure_budget)
+    search = OutputErrorSearch(problem, start, held_out, start.effects, budget)
+    search.add_effects(candidates)
+    if _is_clearly_better(problem, search.model, corrected, held_out):
+        return search.model
+    return corrected
+
+
 def _is_clearly_better(
     problem: Problem, found: Fit, reference: Fit, held_out: Sequence[MappedRecording]
 ) -> bool:
@@ -148,10 +192,17 @@ def _further_starts(problem: Problem, best: Fit, before: Fit, others: Sequence[s
         starts.append(_without_effects(problem, best, others))
     effects = [name for name in others if not type(problem.candidates[name]).described]
     if set(effects) != set(before.effects):
-        free = problem.free_parameters(tuple(effects))
-        theta = free_parameter_values(free, {**best.values(), **before.values()})
-        starts.append(unfitted_hypothesis(tuple(effects), free, theta, before.levels))
+        starts.append(_with_retuned_coefficients(problem, best, effects, before))
     return starts
+
+
+def _with_retuned_coefficients(
+    problem: Problem, best: Fit, effects: Sequence[str], retuned: Fit
+) -> Fit:
+    """The vessel with some effects of one fit, and with all values that another fit has."""
+    free = problem.free_parameters(tuple(effects))
+    theta = free_parameter_values(free, {**best.values(), **retuned.values()})
+    return unfitted_hypothesis(tuple(effects), free, theta, retuned.levels)
 
 
 def _better_of_two(

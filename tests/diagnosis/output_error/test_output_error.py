@@ -16,6 +16,8 @@ from boatsim.diagnosis.output_error.search import OutputErrorSearch
 from boatsim.diagnosis.output_error.stage import (
     _better_of_two,
     _further_starts,
+    _search_without_unsure,
+    _unsure_effects,
     _with_corrected,
     contradicted_effects,
     fit_to_simulations,
@@ -23,6 +25,7 @@ from boatsim.diagnosis.output_error.stage import (
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.budget import SearchBudget
+from boatsim.diagnosis.search.pruning import IdentifiedEffect
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.search.screening import add_effect
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
@@ -284,3 +287,34 @@ def test_a_formula_that_holds_for_the_fitted_recordings_alone_is_left_out() -> N
     found = fit_to_simulations(problem, described, (), held_out, whole_budget(problem))
     assert found.best.effects == ("weak_reverse",)
     assert error(problem, found.best, held_out) < error(problem, best, held_out)
+
+
+@pytest.mark.parametrize(
+    ("stated", "sizes", "stays"),
+    [
+        ("prop_walk", {"side_force_per_thrust": 0.2}, False),
+        ("weak_reverse", {"astern_factor": 1.0 - WEAK_ASTERN}, True),
+    ],
+)
+def test_an_unsure_effect_is_given_up_only_if_simulations_are_better_without_it(
+    stated: str, sizes: dict[str, float], stays: bool
+) -> None:
+    problem, retuned = laid(*(sail(f"fitted {i}", i, odd_and_weak_astern)[0] for i in (1, 2)))
+    held_out = held_out_of(problem, odd_and_weak_astern)
+    start = add_effect(problem, retuned, stated, sizes)
+    corrected = OutputErrorSearch(problem, start, held_out, [stated]).model
+    candidates = ("weak_reverse", "thrust_imbalance", stated)
+    found = _search_without_unsure(problem, corrected, retuned, candidates, held_out)
+    assert (found is corrected) is stays
+    assert found.effects == ("weak_reverse",)
+
+
+def test_an_effect_is_unsure_below_the_probability_of_a_sure_one() -> None:
+    problem, retuned = laid(sail("fitted", 1, odd)[0])
+    ranking = select_and_rank_candidates(problem, ("weak_reverse",))
+    sure = problem.config.decide.sure_probability
+    named = []
+    for name, probability in (("wind", sure), ("current", sure - 0.01), ("tether", 0.5)):
+        named.append(IdentifiedEffect(name, 20.0, 20.0, probability, (), {}))
+    ranking = replace(ranking, named=tuple(named))
+    assert _unsure_effects(problem, ranking, ["wind", "current"]) == ["current"]
