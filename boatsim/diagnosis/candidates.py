@@ -23,6 +23,7 @@ from boatsim.physics.vessel import Vessel, check_bindings, with_absolute_paths
 FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
+FEW = 2  # drives from which on one of them can differ from the others
 
 
 class Placeholders(NamedTuple):
@@ -114,6 +115,7 @@ def candidate_library(
     for source in _sources(vessel, own, fewest):
         kind = source.kind
         name = str(source.table.get("name", kind.type_name()))
+        last_of_few = _is_error_of_one_of_few(kind, vessel, fewest) and not source.requested
         if not has_fittable_parameter(kind):
             if source.requested:
                 raise BadInput(
@@ -121,12 +123,23 @@ def candidate_library(
                     "fit (fit=True)"
                 )
             continue
-        missing = missing_requirements(kind, vessel, known, source.table, fewest, source.requested)
+        least = min(FEW, fewest)
+        missing = missing_requirements(kind, vessel, known, source.table, least, source.requested)
         missing = missing or _missing_columns(kind, columns)
+        if last_of_few and kind.of_two:
+            missing = missing or f"{kind.of_two} describes the difference of two"
         if missing:
             inapplicable[name] = missing
             continue
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
+        if last_of_few:
+            excluded[name] = reason or (
+                "an error of one of two drives is tried only where a force stays unexplained; add "
+                f"--library {name} to test it"
+            )
+            if not reason:
+                last[name] = ()
+            continue
         if kind.confounded_with and not source.requested:
             if reason:
                 excluded[name] = reason
@@ -216,22 +229,37 @@ def _both_sides_of_lag(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
 def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Source]:
     """Every effect of the library, those that the vessel requests, and those of the user.
 
-    From `fewest` instances on, an error of a single one is a candidate for each of them.
+    From `fewest` instances on, an error of a single one is a candidate for each of them, and from
+    two on where the user requests it.
     """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        instances = single_subjects(kind, vessel)
-        if len(instances) < fewest:
+        if len(single_subjects(kind, vessel)) >= fewest:
+            yield from _sources_of_single_ones(name, kind, vessel, False)
+        elif name not in own or not _is_error_of_one_of_few(kind, vessel, fewest):
             yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, False)
-            continue
-        for instance in instances:
-            table: dict[str, object] = {"use": name, "name": f"{name}_{instance}", "on": [instance]}
-            yield _Source(table, kind, False)
     for table in vessel.diagnosis.also:
         requested: type[Effect] = load_class("effect", str(table.get("use")), vessel.path)
         yield _Source(with_absolute_paths(requested, table, vessel.path), requested, True)
     for name in own:
-        yield _Source({"use": name}, load_class("effect", name, named=True), True)
+        kind = load_class("effect", name, named=True)
+        if _is_error_of_one_of_few(kind, vessel, fewest):
+            yield from _sources_of_single_ones(name, kind, vessel, True)
+        else:
+            yield _Source({"use": name}, kind, True)
+
+
+def _sources_of_single_ones(
+    name: str, kind: type[Effect], vessel: Vessel, requested: bool
+) -> Iterator[_Source]:
+    """An error of each single drive, named after it."""
+    for one in single_subjects(kind, vessel):
+        yield _Source({"use": name, "name": f"{name}_{one}", "on": [one]}, kind, requested)
+
+
+def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> bool:
+    """Whether a class is an error of one of several drives, which are few on a vessel."""
+    return bool(kind.once_per) and FEW <= len(single_subjects(kind, vessel)) < fewest
 
 
 def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, object]:

@@ -511,7 +511,7 @@ def try_last_candidates(
     report(f"trying {', '.join(last)}")
     compile_program(again.problem)
     base = fit_baseline_models(again)
-    tested = [name for name in last if name in again.candidates]
+    tested = [name for name in again.candidates if name not in question.candidates]
     gain = largest_gain_on_top(again.problem, ranking.best, tested)
     if ranking.has_unexplained_force_or_cause:  # stand-ins may have taken up its force
         gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))

@@ -361,7 +361,7 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     for channel in ("steer_port_rad", "steer_starboard_rad"):
         single.add(f"azimuth_rate_limit_{channel}")
     assert set(other.tested_names) - set(usual.tested_names) == single
-    assert "fewer than 3" in usual.inapplicable["drive_gain_error"]
+    assert "one of two drives" in usual.excluded["drive_lag"]
     assert [e.name for e in other.placeholders] == ["described_1"]
     assert len(usual.placeholders) == 7
 

@@ -18,6 +18,7 @@ class DriveGainError(CoefficientRelease):
     formula: ClassVar[str] = r"g_i = k \, g_i^0"
     symbols: ClassVar = {"factor": "k"}
     once_per: ClassVar[str] = "thruster"
+    of_two: ClassVar[str] = "thrust_imbalance"
     words: ClassVar[str] = "one thruster is stronger or weaker than specified"
     shown_by: ClassVar[str] = "a staircase of this thruster alone"
     source: ClassVar[str] = (

@@ -93,9 +93,11 @@ class Effect(CheckedParameters):
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
     # fact -> value that must be specified, or the effect is no candidate
     required_facts: ClassVar[Mapping[str, object]] = {}
-    # effect for each of whose instances it is a candidate of its own, where there are more than
+    # effect for each of whose instances it is a candidate of its own, tried last where there are
     # two; "actuator" for a channel effect, which is one for each actuator on which it acts
     once_per: ClassVar[str] = ""
+    # effect that describes the same where there are two instances
+    of_two: ClassVar[str] = ""
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
     # a candidate also where the others leave a force unexplained, or include a confounded one
