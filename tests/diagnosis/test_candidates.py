@@ -359,7 +359,8 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     for effect in (*own, "drive_reversal_pause", "drive_hysteresis", "drive_deadband"):
         single |= {f"{effect}_{channel}" for channel in ("thrust_port_N", "thrust_starboard_N")}
     for channel in ("steer_port_rad", "steer_starboard_rad"):
-        single.add(f"azimuth_rate_limit_{channel}")
+        for effect in ("rate_limit", "lag", "delay", "backlash"):
+            single.add(f"azimuth_{effect}_{channel}")
     assert set(other.tested_names) - set(usual.tested_names) == single
     assert "fewer than 3" in usual.inapplicable["drive_gain_error"]
     assert [e.name for e in other.placeholders] == ["described_1"]

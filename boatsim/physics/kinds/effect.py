@@ -94,7 +94,8 @@ class Effect(CheckedParameters):
     # fact -> value that must be specified, or the effect is no candidate
     required_facts: ClassVar[Mapping[str, object]] = {}
     # effect for each of whose instances it is a candidate of its own, where there are more than
-    # two; "actuator" for a channel effect, which is one for each actuator on which it acts
+    # two; "actuator" for a channel effect, which is one for each actuator on which it acts, also
+    # for two that turn among more than two drives
     once_per: ClassVar[str] = ""
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
