@@ -115,3 +115,30 @@ def platform_of_three_drives() -> Vessel:
         channels={f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places},
         diagnosis={"facts": {"still_water": True, "indoors": True}},
     )
+
+
+def platform_of_turning_drives(turning: Sequence[str] = ("bow", "port", "starboard")) -> Vessel:
+    """A platform with three drives that push ahead; those of `turning` turn, the others are fixed."""
+    places = {"bow": (0.6, 0.0), "port": (-0.6, -0.3), "starboard": (-0.6, 0.3)}
+    channels: dict[str, object] = {}
+    effects: list[dict[str, object]] = [
+        {"use": "linear_damping", "surge": 6.0, "sway": 15.0, "yaw": 6.0}
+    ]
+    for drive, (x, y) in places.items():
+        on: dict[str, object] = {"thrust": f"{drive}_N"}
+        channels[f"{drive}_N"] = {"low": 0.0, "high": 8.0}
+        if drive in turning:
+            on["angle"] = f"{drive}_rad"
+            channels[f"{drive}_rad"] = {"low": -3.1416, "high": 3.1416}
+        effects.append({"use": "thruster", "name": drive, "on": on, "x": x, "y": y})
+    return Vessel.from_effects(
+        name="platform",
+        dof=("surge", "sway", "yaw"),
+        length=1.5,
+        beam=0.9,
+        draught=0.1,
+        body={"mass": 30.0, "roll_inertia": 2.0, "yaw_inertia": 4.0},
+        effects=effects,
+        channels=channels,
+        diagnosis={"facts": {"still_water": True, "indoors": True}},
+    )

@@ -20,6 +20,7 @@ from boatsim.physics.facts import WANDER, describe_fact, excluding_fact
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings, with_absolute_paths
 
+DRIVE_ROLES = ("thrust", "shaft")  # of the actuators that are drives
 FURTHER = "further_"  # prefix of a candidate of which the vessel has one already
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
@@ -234,7 +235,7 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
     """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        if len(single_subjects(kind, vessel)) >= fewest:
+        if has_single_candidates(kind, vessel, fewest):
             yield from _sources_of_single_ones(name, kind, vessel, False)
         elif name not in own or not _is_error_of_one_of_few(kind, vessel, fewest):
             yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, False)
@@ -259,7 +260,8 @@ def _sources_of_single_ones(
 
 def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> bool:
     """Whether a class is an error of one of several drives, which are few on a vessel."""
-    return bool(kind.once_per) and FEW <= len(single_subjects(kind, vessel)) < fewest
+    several = len(single_subjects(kind, vessel)) >= FEW
+    return several and not has_single_candidates(kind, vessel, fewest)
 
 
 def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, object]:
@@ -292,6 +294,24 @@ def single_subjects(kind: type[Effect], vessel: Vessel) -> list[str]:
     if issubclass(kind, ChannelEffect):
         return list(vessel.target_actuators(instantiate_neutral_effect(kind)))
     return vessel.names_of(kind.once_per)
+
+
+def has_single_candidates(kind: type[Effect], vessel: Vessel, fewest: int) -> bool:
+    """Return whether an error of a single drive is a candidate for each that it may concern.
+
+    The number of drives of the vessel decides: of four drives, two may turn, and each of these may
+    turn slowly. Where only one turns, an error of all angles is the same as that of its angle.
+
+    Args:
+        kind: Class of the effect, with `once_per`.
+        vessel: Vessel of the recordings.
+        fewest: Drives from which on an error of a single one can be tested.
+    """
+    subjects = len(single_subjects(kind, vessel))
+    if subjects >= fewest:
+        return True
+    drives = [name for name in vessel.actuators if vessel.roles[name] in DRIVE_ROLES]
+    return subjects >= FEW and len(drives) >= fewest
 
 
 def has_fittable_parameter(kind: type[Effect]) -> bool:
@@ -369,8 +389,8 @@ def missing_requirements(
     for fact, value in kind.required_facts.items():
         if facts.get(fact) != value:
             return f"only where {fact} = {str(value).lower()}"
-    if kind.once_per and len(single_subjects(kind, vessel)) < fewest:
-        return f"fewer than {fewest} of {kind.once_per}"
+    if kind.once_per and not has_single_candidates(kind, vessel, fewest):
+        return f"fewer than {fewest} drives that it could concern"
     if issubclass(kind, Measurement) and kind.motion_latency is not None and not vessel.actuators:
         return "no commands relative to which a latency could be estimated"
     if kind.alone and vessel.names_of(kind.type_name()):

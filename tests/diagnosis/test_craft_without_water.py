@@ -163,7 +163,7 @@ def test_slope_and_yaw_inertia_are_candidates_only_without_water():
 def test_each_drive_is_an_ordinary_candidate_only_where_there_are_more_than_two():
     names = {f"drive_gain_error_{fan}" for fan in FANS}
     own = ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent", "drive_limit")
-    for effect in (*own, "drive_hysteresis"):
+    for effect in (*own, "drive_hysteresis", "drive_deadband"):
         names |= {f"{effect}_{fan}_N" for fan in FANS}
     assert names <= set(candidate_library(CRAFT).tested_names)
     two = candidate_library(vessel.load_vessel("trial_boat"))

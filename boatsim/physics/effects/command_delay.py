@@ -190,3 +190,20 @@ DriveDelay = preset_effect(
         },
     },
 )
+
+
+AzimuthDelay = preset_effect(
+    CommandDelay,
+    "AzimuthDelay",
+    words="the commanded direction of one drive takes effect after a dead time of its own",
+    shown_by="fast steps of the direction of this drive alone",
+    acts_on="angle",
+    once_per="actuator",
+    ruled_out_by={"steering_measured": (True,)},
+    frees={
+        "delay": {
+            "words": "dead time of the direction of this drive, beyond that of the vessel's file",
+            "spread": 0.5,
+        },
+    },
+)

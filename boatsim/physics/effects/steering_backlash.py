@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import COMMANDS
 
 LONG = 1e3  # [s] a command held longer than this is the initial condition of a run
@@ -95,3 +95,18 @@ class SteeringBacklash(ChannelEffect):
         spread=0.5,
         words="position of the first angle in the play: 0 middle, 1 as reached from straight ahead",
     )
+
+
+AzimuthBacklash = preset_effect(
+    SteeringBacklash,
+    "AzimuthBacklash",
+    words="the steering of one drive has play, so its direction lags when the steering reverses",
+    shown_by="small steering reversals of this drive under thrust",
+    once_per="actuator",
+    # before a lag of its drive only, so that the candidates of several drives stay few
+    either_side=False,
+    frees={
+        "width": {"words": "total play of the steering of this drive", "spread": 0.2},
+        "behind": {"spread": 0.5},
+    },
+)

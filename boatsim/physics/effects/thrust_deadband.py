@@ -83,3 +83,22 @@ ShaftDeadband = preset_effect(
         }
     },
 )
+
+
+DriveDeadband = preset_effect(
+    ThrustDeadband,
+    "DriveDeadband",
+    words="small commands of one drive have no effect and all its others lose a constant",
+    shown_by="slow runs at several small thrust levels of this drive alone",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    # before a lag of its drive only, so that the candidates of several drives stay few
+    either_side=False,
+    frees={
+        "width": {
+            "unit": "",
+            "words": "half width of the dead band of this drive, in the unit of its channel",
+            "spread": 0.1,
+        }
+    },
+)

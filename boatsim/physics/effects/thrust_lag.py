@@ -108,3 +108,21 @@ DriveLag = preset_effect(
         },
     },
 )
+
+
+AzimuthLag = preset_effect(
+    ThrustLag,
+    "AzimuthLag",
+    words="the direction of one drive follows its command with a lag of its own",
+    shown_by="fast steps of the direction of this drive alone",
+    acts_on="angle",
+    once_per="actuator",
+    ruled_out_by={"steering_measured": (True,)},
+    frees={
+        "time_constant": {
+            "words": "time constant of the direction of this drive, beyond that of the vessel's "
+            "file: time to 63 % of a step",
+            "spread": 0.6,
+        },
+    },
+)

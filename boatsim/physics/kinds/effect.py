@@ -93,8 +93,8 @@ class Effect(CheckedParameters):
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
     # fact -> value that must be specified, or the effect is no candidate
     required_facts: ClassVar[Mapping[str, object]] = {}
-    # effect for each of whose instances it is a candidate of its own, tried last where there are
-    # two; "actuator" for a channel effect, which is one for each actuator on which it acts
+    # effect for each of whose instances it is a candidate of its own; "actuator" for a channel
+    # effect, which is one for each actuator on which it acts; tried last where there are two drives
     once_per: ClassVar[str] = ""
     # effect that describes the same where there are two instances
     of_two: ClassVar[str] = ""

@@ -1,0 +1,115 @@
+"""Laws of the faults that one drive of several has alone."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from driven_boats import platform_of_three_drives, platform_of_turning_drives
+
+from boatsim.diagnosis.candidates import candidate_library
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.open_water import OpenWater
+
+STEP = 0.02  # [s] of the simulation
+
+
+def final_state(boat: Vessel, commands: Mapping[str, float | Array], steps: int = 100) -> Array:
+    """Pose and velocities after commands, constant or one for each step, from rest.
+
+    Before the first step the commands are the first ones.
+    """
+    orders = [np.broadcast_to(np.asarray(one), steps + 1) for one in commands.values()]
+    table = np.column_stack(orders)
+    engine = OpenWater(boat, STEP)
+    engine.reset(commands=dict(zip(commands, table[0].tolist(), strict=True)))
+    for row in table[1:]:
+        engine.command(dict(zip(commands, row.tolist(), strict=True)))
+        engine.advance()
+    now = engine.state
+    return np.array([now.x, now.y, now.psi, now.u, now.v, now.r])
+
+
+@pytest.mark.parametrize(("command", "thrust"), [(5.0, 3.4), (1.2, 0.0), (-1.6, 0.0), (-4.0, -2.4)])
+def test_a_dead_band_reduces_the_thrust_of_its_drive_alone(command: float, thrust: float) -> None:
+    boat = platform_of_three_drives()
+    dead = boat.with_effect({"use": "drive_deadband", "width": 1.6, "on": ["port_N"]})
+    others = {"bow_N": 1.0, "starboard_N": 3.0}
+    found = final_state(dead, {"port_N": command, **others})
+    assert found == pytest.approx(final_state(boat, {"port_N": thrust, **others}))
+
+
+def test_a_dead_band_is_a_candidate_for_each_of_several_drives() -> None:
+    several = candidate_library(platform_of_three_drives()).tested_names
+    names = {f"drive_deadband_{drive}_N" for drive in ("bow", "port", "starboard")}
+    assert names == {name for name in several if "drive_deadband" in name}
+    two = candidate_library(vessel.load_vessel("trial_boat"))
+    assert "drive_deadband" in two.inapplicable
+
+
+# ---- the direction of one drive
+
+
+T = STEP * np.arange(101)  # [s] from the last instant before the first step
+TURN = np.where(T > 0.0, 0.8, 0.0)  # rad
+FORTH_AND_BACK = 0.6 * np.sin(2.0 * np.pi * T)  # rad
+OTHERS = {"bow_N": 0.0, "port_N": 4.0, "starboard_N": 4.0, "bow_rad": 0.0}
+
+
+def turned_alike(effect: dict[str, object], order: Array, port: Array, rel: float) -> None:
+    """An effect on the port drive acts as if this drive alone had the directions `port`."""
+    boat = platform_of_turning_drives()
+    changed = boat.with_effect({**effect, "on": ["port_rad"]})
+    found = final_state(changed, {**OTHERS, "port_rad": order, "starboard_rad": order})
+    given = final_state(boat, {**OTHERS, "port_rad": port, "starboard_rad": order})
+    sound = final_state(boat, {**OTHERS, "port_rad": order, "starboard_rad": order})
+    assert found == pytest.approx(given, rel=rel)
+    assert abs(found - sound).max() > 0.005
+
+
+def test_a_lag_of_one_direction_is_an_exponential_approach() -> None:
+    tau = 0.5  # s
+    # mean over each step of the closed form 0.8 (1 - exp(-t / tau))
+    decay = np.exp(-(T - STEP) / tau) - np.exp(-T / tau)
+    mean = np.where(T > 0.0, 0.8 * (1.0 - decay * tau / STEP), 0.0)
+    turned_alike({"use": "azimuth_lag", "time_constant": tau}, TURN, mean, 1e-3)
+
+
+def test_a_dead_time_of_one_direction_shifts_it() -> None:
+    late = np.where(T > 0.4 + 0.5 * STEP, 0.8, 0.0)
+    turned_alike({"use": "azimuth_delay", "delay": 0.4}, TURN, late, 1e-9)
+
+
+def test_play_of_one_direction_follows_the_ends_of_the_play() -> None:
+    width, port = 0.3, np.zeros(len(T))  # rad
+    for i in range(1, len(T)):
+        low, high = FORTH_AND_BACK[i] - 0.5 * width, FORTH_AND_BACK[i] + 0.5 * width
+        port[i] = min(max(port[i - 1], low), high)
+    turned_alike({"use": "azimuth_backlash", "width": width}, FORTH_AND_BACK, port, 1e-9)
+
+
+AZIMUTH = ("azimuth_lag", "azimuth_delay", "azimuth_backlash", "azimuth_rate_limit")
+
+
+@pytest.mark.parametrize("turning", [("bow", "port", "starboard"), ("port", "starboard")])
+def test_faults_of_each_direction_are_candidates_where_several_drives_turn(
+    turning: tuple[str, ...],
+) -> None:
+    """The number of drives decides, and not that of the drives that turn."""
+    tested = candidate_library(platform_of_turning_drives(turning)).tested_names
+    names = {f"{effect}_{drive}_rad" for effect in AZIMUTH for drive in turning}
+    assert names == {name for name in tested if "azimuth" in name}
+
+
+def test_faults_of_each_direction_are_none_where_one_drive_turns_or_two_drives_exist() -> None:
+    """Where one drive turns, an error of all directions is the same as that of its direction."""
+    for boat in (platform_of_turning_drives(("bow",)), vessel.load_vessel("trial_boat")):
+        library = candidate_library(boat)
+        assert "drives" in library.inapplicable["azimuth_rate_limit"]
+        assert not {name for name in library.tested_names if "azimuth" in name}
+
+
+def test_directions_that_were_measured_have_no_such_faults() -> None:
+    measured = candidate_library(platform_of_turning_drives(), (), {"steering_measured": True})
+    assert not {name for name in measured.tested_names if "azimuth" in name}
