@@ -39,7 +39,7 @@ def restrict_to_single_groups(
             return best, named
         examined.add(name)
         sets.banned.add(name)
-        restricted = _restricted_fit(sets.problem, best, name, group)
+        restricted = restricted_fit(sets.problem, best, name, group)
         further = prune(sets, sets.converged_fit(restricted))
         if generalizes_worse(sets, best, further[0], held_out):
             sets.banned.remove(name)
@@ -81,11 +81,18 @@ def _effect_of_one_group(problem: Problem, best: Fit, examined: set[str]) -> tup
     return "", ""
 
 
-def _restricted_fit(problem: Problem, best: Fit, name: str, group: str) -> Fit:
-    """The same model with an effect of all recordings in one group alone, not refitted.
+def restricted_fit(problem: Problem, best: Fit, name: str, group: str) -> Fit:
+    """Return the same model with an effect of all recordings in one group alone, not refitted.
 
-    Where the effects of the other groups change its numbers by a factor or a sum, that factor or
-    sum is completed by its own.
+    The effects of the other groups replace its numbers, or change them by a factor or a summand.
+    Such a factor is multiplied by that of the effect, and such a summand is added to its own, so
+    that the numbers of all fitted recordings stay the same, within the bounds of the parameters.
+
+    Args:
+        problem: The estimation problem.
+        best: Fit of the vessel model with some candidate effects.
+        name: Name of an effect that acts in all recordings.
+        group: The group in which it will act alone.
     """
     alone = name_in_group(name, group)
     effects = list(best.effects)
