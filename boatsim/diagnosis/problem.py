@@ -282,7 +282,7 @@ class Problem:
     links: tuple[tuple[int, int], ...] = field(init=False)
     # groups to which some of the recordings belong, but not all; each set of recordings once
     groups: tuple[str, ...] = field(init=False)
-    # further groups of the same recordings, which nothing tells apart, by the name in `groups`
+    # further groups of exactly the same recordings, by the name in `groups`
     same_recordings: Mapping[str, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:

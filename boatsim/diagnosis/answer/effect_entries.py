@@ -245,7 +245,7 @@ def _others(problem: Problem, best: Fit, effect: Effect, name: str) -> str:
 
 
 def _common_value(best: Fit, effect: Effect, name: str) -> str:
-    """The value of a ratio in all groups without a value of their own, in words."""
+    """The value of a ratio in all groups that have none themselves, in words."""
     param = type(effect).params()[name]
     common = without_group(effect.name)
     value = param.inactive_value

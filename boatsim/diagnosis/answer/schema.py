@@ -26,7 +26,7 @@ class InGroup(TypedDict, total=False):
     """Group of recordings in which alone an effect acts, in diagnosis.json, if any."""
 
     group: str  # in which alone it acts, or differs from the others
-    same_recordings: list[str]  # further groups of the same recordings, which nothing tells apart
+    same_recordings: list[str]  # further groups of exactly the same recordings
 
 
 class Acting(InGroup, total=False):

@@ -449,8 +449,8 @@ def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:
 def tied_groups_statement(effect: EffectEntry) -> str:
     """Return the statement that an effect may act in another group of recordings instead.
 
-    Recordings of two groups alone show how these differ, and hardly which of them is as the vessel
-    file says. Returns "" if the recordings show the group.
+    Recordings of two groups alone show how these differ, and hardly which of them agrees with the
+    vessel file. Returns "" if the recordings show the group.
 
     Args:
         effect: An identified effect.
