@@ -280,8 +280,10 @@ class Problem:
     nominal_coefficients: tuple[FreeParameter, ...] = field(init=False)
     # (to, from) places in the values of a run: unset parameters inherit the vessel's value
     links: tuple[tuple[int, int], ...] = field(init=False)
-    # groups to which some of the recordings belong, but not all
+    # groups to which some of the recordings belong, but not all; each set of recordings once
     groups: tuple[str, ...] = field(init=False)
+    # further groups of exactly the same recordings, by the name in `groups`
+    same_recordings: Mapping[str, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
         program = self.recordings[0].program
@@ -290,7 +292,8 @@ class Problem:
         object.__setattr__(self, "horizon", self.specified_horizon or usual)
         object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
         object.__setattr__(self, "links", self._inherited_places())
-        object.__setattr__(self, "groups", self._groups())
+        object.__setattr__(self, "same_recordings", self._groups())
+        object.__setattr__(self, "groups", tuple(self.same_recordings))
 
     def with_recordings(self, recordings: Sequence[MappedRecording]) -> "Problem":
         """Return the same estimation problem for other recordings.
@@ -313,17 +316,28 @@ class Problem:
         object.__setattr__(other, "spreads", {**self.spreads, effect: sd})
         return other
 
-    def _groups(self) -> tuple[str, ...]:
-        """Groups to which some of the recordings belong, but not all; each set of runs once."""
+    def _groups(self) -> dict[str, tuple[str, ...]]:
+        """Groups to which some of the recordings belong, but not all; each set of runs once.
+
+        The first name in alphabetical order stands for further groups of the same recordings.
+        """
         members = defaultdict[str, list[int]](list)
         for i, mapped in enumerate(self.recordings):
             for group in mapped.groups:
                 members[group].append(i)
-        found = dict[tuple[int, ...], str]()
+        names = defaultdict[tuple[int, ...], list[str]](list)
         for group, runs in sorted(members.items()):
             if len(runs) < len(self.recordings):
-                found.setdefault(tuple(runs), group)
-        return tuple(sorted(found.values()))
+                names[tuple(runs)].append(group)
+        return {first: tuple(others) for first, *others in names.values()}
+
+    def are_separate_and_complete(self, groups: Sequence[str]) -> bool:
+        """Return whether each fitted recording belongs to exactly one of some groups.
+
+        Args:
+            groups: Names of the groups.
+        """
+        return all(len(set(groups) & set(mapped.groups)) == 1 for mapped in self.recordings)
 
     @property
     def work_count(self) -> WorkCount:

@@ -15,14 +15,16 @@ from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.recording_mapping import map_recording
-from boatsim.diagnosis.search.ranking import select_and_rank_candidates
+from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics.base import Array
+from boatsim.physics.groups import group_of
 from boatsim.physics.program import Program
 
 RATE = 0.1  # [N s/m^2] in 40 s as much as the boat's own drag at 0.7 m/s
 LATE = 1000.0  # [s] by which the clock of a log may be ahead
 OWN, FOULED = 3.0, 1.5  # [N s/m] surge damping, and its factor on the second day
 DAMPED = ("damping_error", "drag_growth", "towed_drag", "thrust_gain_error", "payload")
+KNOWN, ROUGH = 0.05, 0.3  # relative uncertainty of the damping in the vessel file
 PUSHED = {"thrust_N": (0.0, 20.0), "azimuth_rad": (-1.2, 1.2)}
 
 
@@ -77,19 +79,35 @@ def test_on_another_vessel_it_is_named_only_where_it_acts(tmp_path: Path, rate: 
         assert abs(found["value"] - rate) < 3.5 * found["sd"] < 0.3 * rate
 
 
-@pytest.mark.slow
-def test_drag_that_grew_between_two_days_is_named_on_the_second_day() -> None:
+def ranked_days(damping: float) -> Ranking:
+    """The selection from two days, with a relative uncertainty of the damping in the file."""
     runs = []
     for seed, day in enumerate(("april", "april", "june", "june")):
         run, _ = sail(f"{day}_{seed}", seed, fouled if day == "june" else clean)
         runs.append(replace(run, notes=replace(run.notes, groups=(day,))))
     program = Program(BOAT, candidate_library(BOAT, facts={"begin_s": 0.0}).compiled_effects)
     mapped = [map_recording(run, program) for run in runs]
-    problem = Problem(mapped, prior_noise_levels(BOAT, runs), {"damping": 0.05, "thrust": 0.05})
+    levels = prior_noise_levels(BOAT, runs)
+    problem = Problem(mapped, levels, {"damping": damping, "thrust": 0.05})
     tested = (*DAMPED, *problem.candidates_in_single_groups(DAMPED))
-    ranking = select_and_rank_candidates(problem, tested)
+    return select_and_rank_candidates(problem, tested)
+
+
+@pytest.mark.slow
+def test_drag_that_grew_between_two_days_is_named_on_the_day_that_differs_from_the_file() -> None:
+    ranking = ranked_days(KNOWN)
     [one] = ranking.named
-    assert one.name in ("damping_error@june", "damping_error@april")
+    assert one.name == "damping_error@june" and not one.tied_groups
     factor, sd = ranking.best.value(one.name, "surge_factor")
-    true = FOULED if one.name.endswith("june") else 1.0 / FOULED
+    assert abs(factor - FOULED) < max(3.5 * sd, 0.1)
+
+
+@pytest.mark.slow
+def test_where_the_damping_in_the_file_is_rough_either_day_may_be_the_odd_one() -> None:
+    ranking = ranked_days(ROUGH)
+    [one] = ranking.named
+    days = {group_of(one.name), *one.tied_groups}
+    assert days == {"april", "june"} and not one.tied_with
+    factor, sd = ranking.best.value(one.name, "surge_factor")
+    true = FOULED if group_of(one.name) == "june" else 1.0 / FOULED
     assert abs(factor - true) < max(3.5 * sd, 0.1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.diagnosis.answer.confirmation import effect_error_entry, reason_unconfirmed
+from boatsim.diagnosis.answer.group_words import group_entry, group_in_words, groups_in_words
 from boatsim.diagnosis.answer.parameters import parameter_key, reported_sd
 from boatsim.diagnosis.answer.schema import (
     Acting,
@@ -17,7 +18,6 @@ from boatsim.diagnosis.answer.schema import (
 )
 from boatsim.diagnosis.answer.signs import reason_for_doubt
 from boatsim.diagnosis.candidates import name_without_prefixes
-from boatsim.diagnosis.config import AnswerConfig
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.search.pruning import IdentifiedEffect
@@ -69,20 +69,21 @@ def effect_entry(
     acting: Acting = {}
     if effect.on:
         acting["on"] = list(effect.on)
-    if group := group_of(named.name):
-        acting["group"] = group
-    return {
+    if named.tied_groups:
+        acting["tied_groups"] = list(named.tied_groups)
+    entry: EffectEntry = {
         "name": name_without_prefixes(named.name),
         **acting,
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
-        "words": _words(best, effect),
+        "words": _words(problem, best, effect),
         "tied_with": list(map(name_without_prefixes, named.tied_with)),
         "parameters": _parameters(problem, best, effect) | _ratios(problem, best, effect),
         "alone": effect_error_entry(judged.alone),
         "confirmed": judged.outcome == "confirmed",
     }
+    return {**entry, **group_entry(problem, named.name)}
 
 
 def added_entry(problem: Problem, best: Fit, name: str) -> AddedEntry:
@@ -94,15 +95,13 @@ def added_entry(problem: Problem, best: Fit, name: str) -> AddedEntry:
         name: Name of the effect among the candidates.
     """
     effect = problem.candidates[name]
-    entry: AddedEntry = {
+    return {
         "name": name_without_prefixes(name),
+        **group_entry(problem, name),
         "kind": type(effect).kind,
-        "words": _words(best, effect),
+        "words": _words(problem, best, effect),
         "parameters": _parameters(problem, best, effect),
     }
-    if group := group_of(name):
-        entry["group"] = group
-    return entry
 
 
 def possible_entry(
@@ -132,7 +131,7 @@ def possible_entry(
         "name": name_without_prefixes(doubtful.name),
         "probability": round(doubtful.probability, 4),
         "gain_nats": round(doubtful.gain, 2),
-        "words": _words(best, effect),
+        "words": _words(problem, best, effect),
         "why": why,
         "in_patch": doubtful.name in best.effects,
         "parameters": _parameters(problem, best, effect),
@@ -143,7 +142,7 @@ def possible_entry(
     if doubtful.name in balanced:
         (other,) = [name for name in balanced if name != doubtful.name]
         entry["together_with"] = name_without_prefixes(other)
-    return entry
+    return {**entry, **group_entry(problem, doubtful.name)}
 
 
 def _parameters(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
@@ -151,7 +150,7 @@ def _parameters(problem: Problem, best: Fit, effect: Effect) -> dict[str, Parame
     params, found = type(effect).params(), {}
     for name in _fitted_parameters(best, effect):
         key = parameter_key(name, params[name].unit)
-        found[key] = _parameter(best, effect, name, problem.config.answer)
+        found[key] = _parameter(problem, best, effect, name)
     return found
 
 
@@ -162,7 +161,7 @@ def _fitted_parameters(best: Fit, effect: Effect) -> dict[str, FreeParameter]:
 
 def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
     """Return the ratios of parameters, where the recordings determine only ratios."""
-    vessel, config = problem.program.vessel, problem.config.answer
+    vessel = problem.program.vessel
     own = _fitted_parameters(best, effect)
     fitted = {name: best.value(effect.name, name)[0] for name in own}
 
@@ -174,7 +173,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     variance = dict.fromkeys(found, 0.0)
     if found:
         for name in fitted:
-            sd = _parameter(best, effect, name, config)["sd"]
+            sd = _parameter(problem, best, effect, name)["sd"]
             low, high = ratios_after_step(name, -0.5 * sd), ratios_after_step(name, 0.5 * sd)
             for key in variance:
                 variance[key] += (high[key][0] - low[key][0]) ** 2
@@ -184,7 +183,7 @@ def _ratios(problem: Problem, best: Fit, effect: Effect) -> dict[str, ParameterE
     return entries
 
 
-def _words(best: Fit, effect: Effect) -> str:
+def _words(problem: Problem, best: Fit, effect: Effect) -> str:
     """Return the meaning of an effect, or of its opposite where its factor is above 1."""
     kind = type(effect)
     words, own = kind.words, list(_fitted_parameters(best, effect))
@@ -199,13 +198,14 @@ def _words(best: Fit, effect: Effect) -> str:
         words = f"{words}, {where}"
     if kind.once_per and effect.on:
         words = f"{words}: {', '.join(effect.on)}"
-    if group := group_of(effect.name):
-        words = f"in group {group}, {words}"
+    if where := group_in_words(group_entry(problem, effect.name)):
+        words = f"{where}, {words}"
     return words
 
 
-def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> ParameterEntry:
+def _parameter(problem: Problem, best: Fit, effect: Effect, name: str) -> ParameterEntry:
     """Return value, sd and unit of a fitted parameter; angles are within half a turn."""
+    config = problem.config.answer
     param = type(effect).params()[name]
     value, _ = best.value(effect.name, name)
     entry: ParameterEntry = {
@@ -222,15 +222,30 @@ def _parameter(best: Fit, effect: Effect, name: str, config: AnswerConfig) -> Pa
     sentence = sentence_in_per_cent(param.in_per_cent, value, entry["sd"], param.inactive_value)
     if sentence and type(effect).once_per and effect.on:
         sentence = f"{', '.join(effect.on)}: {sentence}"
-    if sentence and group_of(effect.name):
-        sentence = f"in group {group_of(effect.name)}, {sentence}; {_others(best, effect, name)}"
+    if sentence and (group := group_of(effect.name)):
+        sentence = f"in group {group}, {sentence}; {_others(problem, best, effect, name)}"
     if sentence:
         entry["statement"] = sentence
     return entry
 
 
-def _others(best: Fit, effect: Effect, name: str) -> str:
+def _others(problem: Problem, best: Fit, effect: Effect, name: str) -> str:
     """The value of a ratio in the groups that an effect does not concern, in words."""
+    common = without_group(effect.name)
+    own = []  # groups that have their own value, too
+    for other in best.effects:
+        if other != effect.name and without_group(other) == common and group_of(other):
+            own.append(group_of(other))
+    if own and problem.are_separate_and_complete([group_of(effect.name), *own]):
+        return f"{groups_in_words(own)} {'have' if len(own) > 1 else 'has'} another value"
+    words = _common_value(best, effect, name)
+    if own:
+        return f"{words}, except {groups_in_words(own)}"
+    return words
+
+
+def _common_value(best: Fit, effect: Effect, name: str) -> str:
+    """The value of a ratio in all groups that have none themselves, in words."""
     param = type(effect).params()[name]
     common = without_group(effect.name)
     value = param.inactive_value

@@ -133,13 +133,18 @@ def _possible(best: Fit, effect: Effect, entry: EffectEntry) -> PossibleEntry:
         key = parameter_key(free.name, type(effect).params()[free.name].unit)
         value = entry["parameters"][key]
         sizes.append(" ".join(format_parameter(key, value["value"], value["unit"], value["sd"])))
-    return {
+    possible: PossibleEntry = {
         "name": entry["name"],
         "probability": entry["probability"],
         "gain_nats": entry["gain_nats"],
         "words": entry["words"],
         "why": f"these recordings do not determine its size: {join_words(sizes)}",
     }
+    if "group" in entry:
+        possible["group"] = entry["group"]
+    if "same_recordings" in entry:
+        possible["same_recordings"] = entry["same_recordings"]
+    return possible
 
 
 def _changes(problem: Problem, effect: Effect) -> list[CoefficientChange]:

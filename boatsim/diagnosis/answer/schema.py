@@ -22,11 +22,19 @@ AloneEntry = TypedDict("AloneEntry", {"without": float, "with": float})
 """Rms errors of free runs over held-out recordings without and with one effect [m or rad]."""
 
 
-class Acting(TypedDict, total=False):
+class InGroup(TypedDict, total=False):
+    """Group of recordings in which alone an effect acts, in diagnosis.json, if any."""
+
+    group: str  # in which alone it acts, or differs from the others
+    same_recordings: list[str]  # further groups of exactly the same recordings
+
+
+class Acting(InGroup, total=False):
     """Signals on which an effect acts, and the group of recordings, in diagnosis.json, if any."""
 
     on: list[str]
-    group: str  # in which alone it acts, or differs from the others
+    # other groups in which the same effect explains the recordings as well in its place
+    tied_groups: list[str]
 
 
 class EffectEntry(Acting):
@@ -72,7 +80,7 @@ class RefinedEntry(Acting):
     confirmed: NotRequired[bool]
 
 
-class PossibleEntry(TypedDict):
+class PossibleEntry(InGroup):
     """An effect that may act, but that these recordings do not confirm, in diagnosis.json."""
 
     name: str
@@ -88,7 +96,7 @@ class PossibleEntry(TypedDict):
     together_with: NotRequired[str]  # effect that balances it; free runs require both or neither
 
 
-class AddedEntry(TypedDict):
+class AddedEntry(InGroup):
     """An effect that the corrected vessel has for better simulations alone, in diagnosis.json.
 
     Nothing is stated about whether it is a cause.
@@ -98,7 +106,6 @@ class AddedEntry(TypedDict):
     kind: str  # "physics" or "measurement"
     words: str
     parameters: dict[str, ParameterEntry]
-    group: NotRequired[str]  # of recordings, in which alone it acts
 
 
 class FactorEntry(TypedDict):

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.findings import setting_of
 from boatsim.diagnosis.answer.formulas import doubt, is_event, is_stated, states_any
+from boatsim.diagnosis.answer.group_words import group_in_words
 from boatsim.diagnosis.answer.refined_numbers import main_refinement
 from boatsim.diagnosis.answer.schema import (
     AddedEntry,
@@ -116,6 +117,9 @@ def verdict_sentences(answer: Answer, words: Mapping[str, str] | None = None) ->
     if not statements:
         return NOTHING_MISSING.format(REFITTED if has_refitted_coefficients(answer) else "")
     statements += _look_alikes(answer["effects"])
+    for effect in answer["effects"]:
+        if statement := tied_groups_statement(effect):
+            statements.append(statement)
     statements += _balanced_effects(answer, words or {})
     statements += _confirmed_possible(answer)
     statements += uncertain
@@ -193,8 +197,8 @@ def _added_name(entry: AddedEntry) -> str:
     A value at the bound of its plausible range shows that the effect stands in for something else.
     """
     name = name_in_words(without_group(entry["name"]))
-    if group := entry.get("group"):
-        name = f"{name} in group {group}"
+    if where := group_in_words(entry):
+        name = f"{name} {where}"
     if any(p.get("at_bound") for p in entry["parameters"].values()):
         name = f"{name} (at the bound of its range)"
     return name
@@ -440,6 +444,25 @@ def _look_alikes(effects: Sequence[EffectEntry]) -> list[str]:
     if not ties:
         return []
     return [f"these recordings cannot distinguish {join_words(ties)}"]
+
+
+def tied_groups_statement(effect: EffectEntry) -> str:
+    """Return the statement that an effect may act in another group of recordings instead.
+
+    Recordings of two groups alone show how these differ, and hardly which of them agrees with the
+    vessel file. Returns "" if the recordings show the group.
+
+    Args:
+        effect: An identified effect.
+    """
+    if not effect.get("tied_groups"):
+        return ""
+    name = name_in_words(without_group(effect["name"]))
+    groups = join_words((effect["group"], *effect["tied_groups"]), "or")
+    return (
+        f"these recordings do not show whether {name} is of group {groups}, only that these groups "
+        "differ"
+    )
 
 
 def _unexplained_rms(answer: Answer) -> str:

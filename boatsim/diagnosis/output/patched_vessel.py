@@ -8,12 +8,13 @@ from pathlib import Path
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
+from boatsim.diagnosis.answer.group_words import group_entry, group_in_words
 from boatsim.diagnosis.output import spread_table
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.files import replace_file
 from boatsim.physics.base import ChannelEffect, CoefficientChange, CoefficientRelease, Effect
 from boatsim.physics.content import effect_reference, find_content_file, vessel_reference
-from boatsim.physics.groups import name_in_group, without_group
+from boatsim.physics.groups import group_of, name_in_group, without_group
 from boatsim.physics.vessel import Body, Vessel, apply_load_values, effect_from_table
 
 DIGITS = 10  # significant, so that the file reproduces the fitted motion
@@ -76,7 +77,7 @@ def patched_vessel_text(
     for effect in candidates:
         for group in problem.groups:
             if (name := name_in_group(effect.name, group)) in settings:
-                _set_in_load(document, vessel, effect, group, settings[name])
+                _set_in_load(document, problem, vessel, problem.candidates[name], settings[name])
     _keep_fitted_defaults(document, problem, vessel, found)
     document.pop("spread", None)  # of an earlier diagnosis
     if (spread := spread_table.uncertainty_table(problem, found, events)) is not None:
@@ -159,16 +160,20 @@ def _neutral_settings(effect: Effect) -> dict[str, float]:
 
 def _set_in_load(
     document: tomlkit.TOMLDocument,
+    problem: Problem,
     vessel: Vessel,
     effect: Effect,
-    group: str,
     values: Mapping[str, float],
 ) -> None:
-    """Write the numbers of one group of recordings into the load condition of its name."""
+    """Write the numbers of an effect of one group into the load condition of the group's name."""
     loads = document.setdefault("loads", tomlkit.table(is_super_table=True))
-    load = loads.setdefault(group, tomlkit.table())
+    load = loads.setdefault(group_of(effect.name), tomlkit.table())
+    where = group_in_words(group_entry(problem, effect.name))
+    idea = without_group(effect.name)
     if not isinstance(effect, CoefficientRelease):
-        own = load.setdefault(effect.name, tomlkit.table())
+        own = load.setdefault(idea, tomlkit.table())
+        if not isinstance(own, InlineTable):
+            own.comment(f"{idea} {where}")
         for name, x in values.items():
             own[name] = _rounded(x)
         return
@@ -178,7 +183,7 @@ def _set_in_load(
         own = load.setdefault(change.owner, tomlkit.table())
         nominal = own.get(change.key, _number_in_file(document, vessel, change))
         new = change.changed_value(float(nominal), values[change.parameter])
-        _set_number(own, change.key, new, f"{effect.name} in group {group}")
+        _set_number(own, change.key, new, f"{idea} {where}")
 
 
 def _number_in_file(

@@ -6,6 +6,7 @@ import numpy as np
 
 from boatsim.diagnosis.answer.described_terms import factors_in_words
 from boatsim.diagnosis.answer.families import FAMILIES
+from boatsim.diagnosis.answer.group_words import group_entry, group_in_words
 from boatsim.diagnosis.answer.schema import Family
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import MappedRecording
@@ -20,7 +21,7 @@ from boatsim.diagnosis.report.what_if import (
     Slider,
     WhatIf,
 )
-from boatsim.physics.groups import group_of, without_group
+from boatsim.physics.groups import without_group
 from boatsim.view.formatting import name_in_words
 from boatsim.webassembly.compiler import WasmCompiler
 from boatsim.webassembly.program import compile_program
@@ -154,8 +155,8 @@ def _adjustable_effects(found: Diagnosis) -> list[AdjustableEffect]:
 def _adjustable_effect(found: Diagnosis, fit: Fit, name: str, identified: bool) -> AdjustableEffect:
     """Return a candidate with its sliders; one that is random has none."""
     shown = name_in_words(without_group(name_without_prefixes(name)))
-    if group := group_of(name):
-        shown = f"{shown} in group {group}"
+    if where := group_in_words(group_entry(found.problem, name)):
+        shown = f"{shown} {where}"
     words = found.findings.words.get(name_without_prefixes(name), "")
     if name in found.ranking.described_terms:
         factors = factors_in_words(found.ranking.described_terms[name])

@@ -21,6 +21,7 @@ from boatsim.diagnosis.answer.verdict import (
     probability_with_look_alikes,
     ratio_sentences,
     structure_clause,
+    tied_groups_statement,
 )
 from boatsim.diagnosis.report import figures
 from boatsim.diagnosis.report.confirmation import effect_sentences
@@ -159,6 +160,8 @@ def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Bl
             if name in f.words:
                 rivals[-1] += f" ({_meaning(f.words[name])})"
         yield Text(f"These recordings cannot distinguish it from {join_words(rivals, 'or')}.")
+    if statement := tied_groups_statement(e):
+        yield Text(f"{capitalize(statement)}.")
 
 
 def _held_out_sentences(f: Findings, effect: EffectEntry) -> list[str]:

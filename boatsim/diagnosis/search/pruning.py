@@ -20,7 +20,7 @@ from boatsim.diagnosis.search.evidence import (
 )
 from boatsim.diagnosis.search.forward_selection import select_forward
 from boatsim.diagnosis.significance import distance_from_zero, jointly_differ_from_zero
-from boatsim.physics.groups import without_group
+from boatsim.physics.groups import group_of, without_group
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,8 @@ class IdentifiedEffect:
     probability: float
     tied_with: tuple[str, ...]  # names of its look-alikes
     rivals: Mapping[str, Fit]  # fits with the best other candidates in its place
+    # groups of recordings in which the same effect explains them as well in its place
+    tied_groups: tuple[str, ...] = ()
 
 
 def prune(sets: CandidateSets, best: Fit) -> tuple[Fit, tuple[IdentifiedEffect, ...]]:
@@ -300,7 +302,8 @@ def compare_rivals(
 ) -> IdentifiedEffect:
     """Compare an effect with rival candidates: return its evidence, probability and look-alikes.
 
-    Look-alikes are rivals whose evidence is nearly as large.
+    Look-alikes are rivals whose evidence is nearly as large. The same effect in another group of
+    recordings is none: the cause is known then, and only the group is not.
 
     Args:
         name: Name of the effect.
@@ -316,7 +319,12 @@ def compare_rivals(
     same = np.array([False, True, *(_idea(n) == _idea(name) for n in gains)])
     order = sorted(gains, key=lambda n: -gains[n])
     close = gain - config.alike
-    tied = [n for n in order if gains[n] > close and _idea(n) != _idea(name)]
+    tied, groups = list[str](), list[str]()
+    for rival in order:
+        if gains[rival] > close and _idea(rival) != _idea(name):
+            tied.append(rival)
+        elif gains[rival] > close and group_of(rival) not in ("", group_of(name)):
+            groups.append(group_of(rival))
     probability = float(weights[same].sum() / weights.sum())
     return IdentifiedEffect(
         name,
@@ -325,4 +333,5 @@ def compare_rivals(
         probability,
         tuple(tied[: config.most_look_alikes]),
         {n: rivals[n] for n in order},
+        tuple(groups) if group_of(name) else (),
     )

@@ -15,6 +15,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.differing_groups import restrict_to_single_groups
 from boatsim.diagnosis.search.energy_balance import dissipative_force_name, oscillating_force_name
 from boatsim.diagnosis.search.estimated_numbers import candidates_for_absent_numbers
 from boatsim.diagnosis.search.evidence import (
@@ -136,7 +137,7 @@ def select_and_rank_candidates(
     come first: they are no missing physics, and another effect shall not take their place. An
     effect is removed if far more remains unexplained than it explains, if free runs over held-out
     recordings get worse by it, or if it makes these less likely. Held-out recordings decide between
-    look-alikes.
+    look-alikes. An effect that every group of recordings but one replaces is stated for that group.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -164,6 +165,7 @@ def select_and_rank_candidates(
     report("judging what is left over", JUDGING)
     best, named = _remove_refuted_effects(sets, best, named, held_out)
     best, named, correlated = _search_law_behind_waves(sets, best, named, held_out)
+    best, named = restrict_to_single_groups(sets, best, named, held_out)
     named = remove_refuted_rivals(sets, best, named, held_out)
     explained = sets.explained_evidence(best)
     inflated = inflate_covariance(problem, best)
