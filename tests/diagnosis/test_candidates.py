@@ -355,6 +355,7 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     other = candidate_library(BOAT, config=replace(DEFAULT, select=select, describe=describe))
     single = {f"drive_gain_error_{name}" for name in BOAT.names_of("thruster")}
     single |= {f"drive_fade_{name}" for name in BOAT.names_of("thruster")}
+    single |= {f"drive_loss_with_speed_{name}" for name in BOAT.names_of("thruster")}
     own = ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent", "drive_limit")
     for effect in (*own, "drive_reversal_pause", "drive_hysteresis", "drive_deadband"):
         single |= {f"{effect}_{channel}" for channel in ("thrust_port_N", "thrust_starboard_N")}

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from answers import diagnosed, named
+from answers import diagnosed, named, nothing_missing
 from driven_boats import platform_of_three_drives
 from scipy.integrate import odeint
 
@@ -25,29 +25,37 @@ FULL = 8.0  # N
 RATE, ROWS, HOLD = 5.0, 400, 10  # Hz, rows of a recording, rows between two orders
 PORT = np.arange(3) == 1
 
-Fault = Callable[[Array], Array]  # orders (3,) -> thrusts (3,) [N]
+# orders (3,) [N] and speeds of advance of the drives (3,) [m/s] -> thrusts (3,) [N]
+Fault = Callable[[Array, Array], Array]
 
 
-def dead(order: Array) -> Array:
+def dead(order: Array, speed: Array) -> Array:
     """The port drive gives nothing below 1.6 N, and loses 1.6 N above."""
     beyond = np.sign(order) * np.maximum(abs(order) - 1.6, 0.0)
     return np.where(PORT, beyond, order)
 
 
-def bent(order: Array) -> Array:
+def bent(order: Array, speed: Array) -> Array:
     """The thrust of the port drive grows with a power of its command."""
     return np.where(PORT, np.sign(order) * FULL * (abs(order) / FULL) ** 1.3, order)
 
 
-def weak(order: Array) -> Array:
+def weak(order: Array, speed: Array) -> Array:
     """The port drive gives less than specified."""
     return np.where(PORT, 0.8 * order, order)
 
 
-def derivatives(state: Array, time: float, thrust: Array) -> list[float]:
+def lossy(order: Array, speed: Array) -> Array:
+    """The port drive loses thrust with its speed of advance."""
+    return np.where(PORT, order - 0.3 * speed * abs(order), order)
+
+
+def derivatives(state: Array, time: float, order: Array, fault: Fault) -> list[float]:
     """Rates of north, east, heading and the velocities ahead, to starboard and of turn."""
-    ahead, right = thrust * np.cos(ANGLE), thrust * np.sin(ANGLE)
     u, v, r = state[3:]
+    speed = (u - r * Y) * np.cos(ANGLE) + (v + r * X) * np.sin(ANGLE)
+    thrust = fault(order, speed)
+    ahead, right = thrust * np.cos(ANGLE), thrust * np.sin(ANGLE)
     forces = np.array([ahead.sum(), right.sum(), X @ right - Y @ ahead]) - DAMPING * state[3:]
     c, k = np.cos(state[2]), np.sin(state[2])
     velocities = [u * c - v * k, u * k + v * c, r]
@@ -61,7 +69,7 @@ def sailed(fault: Fault, seed: int) -> Recording:
     times = np.arange(HOLD + 1) / RATE
     state, poses = np.zeros(6), list[Array]()
     for order in orders:
-        course = odeint(derivatives, state, times, args=(fault(order),), rtol=1e-8)
+        course = odeint(derivatives, state, times, args=(order, fault), rtol=1e-8)
         poses += list(course[:-1, :3])
         state = course[-1]
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * 0.005
@@ -90,3 +98,13 @@ def test_a_bent_curve_of_one_drive_is_not_taken_for_a_dead_band(tmp_path: Path) 
 @pytest.mark.slow
 def test_a_weak_drive_is_not_taken_for_one_with_a_dead_band(tmp_path: Path) -> None:
     named(answer(weak, tmp_path), "drive_gain_error_port", {"factor": 0.8})
+
+
+@pytest.mark.slow
+def test_a_drive_that_alone_loses_thrust_with_the_speed_is_named(tmp_path: Path) -> None:
+    named(answer(lossy, tmp_path), "drive_loss_with_speed_port", {"loss_spm": 0.3})
+
+
+@pytest.mark.slow
+def test_drives_without_a_fault_have_nothing_missing(tmp_path: Path) -> None:
+    nothing_missing(answer(lambda order, speed: order, tmp_path))

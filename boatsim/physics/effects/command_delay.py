@@ -195,7 +195,7 @@ DriveDelay = preset_effect(
 AzimuthDelay = preset_effect(
     CommandDelay,
     "AzimuthDelay",
-    words="the commanded direction of one drive takes effect after a dead time of its own",
+    words="the commanded direction of one drive alone takes effect after a dead time",
     shown_by="fast steps of the direction of this drive alone",
     acts_on="angle",
     once_per="actuator",

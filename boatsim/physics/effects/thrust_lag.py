@@ -113,7 +113,7 @@ DriveLag = preset_effect(
 AzimuthLag = preset_effect(
     ThrustLag,
     "AzimuthLag",
-    words="the direction of one drive follows its command with a lag of its own",
+    words="the direction of one drive alone follows its command with a lag",
     shown_by="fast steps of the direction of this drive alone",
     acts_on="angle",
     once_per="actuator",

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, preset_effect
 from boatsim.physics.effects.thruster import speed_of_advance, thrust_wrench_at_mount
 
 # Share of the full thrust below which the loss of a propeller falls to zero with the thrust itself,
@@ -118,3 +118,20 @@ class ThrustLossWithSpeed(Force):
     full_astern: float = param(
         0.0, low=0.0, high=1e8, unit="N", words="full thrust astern at rest; 0: as above"
     )
+
+
+DriveLossWithSpeed = preset_effect(
+    ThrustLossWithSpeed,
+    "DriveLossWithSpeed",
+    words="the thrust of one drive decreases with the speed of the boat, unlike that of the others",
+    shown_by="the same command of this drive alone from rest and at full speed",
+    once_per="thruster",
+    frees={
+        "loss": {
+            "low": -50.0,  # where all drives of the vessel's file lose more than this one
+            "words": "share of the thrust of this drive lost per speed, beyond that of the "
+            "vessel's file",
+            "spread": 0.5,
+        },
+    },
+)

@@ -1,6 +1,7 @@
 """Laws of the faults that one drive of several has alone."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,6 +47,15 @@ def test_a_dead_band_is_a_candidate_for_each_of_several_drives() -> None:
     assert names == {name for name in several if "drive_deadband" in name}
     two = candidate_library(vessel.load_vessel("trial_boat"))
     assert "drive_deadband" in two.inapplicable
+
+
+def test_a_loss_with_the_speed_reduces_the_speed_under_one_drive() -> None:
+    """In the steady state (d + l T) u = 2 T, with the loss l of one of two drives with thrust T."""
+    boat = replace(platform_of_three_drives(), dof=("surge",))
+    lossy = boat.with_effect({"use": "drive_loss_with_speed", "loss": 0.5, "on": ["port"]})
+    commands = {"port_N": 4.0, "starboard_N": 4.0, "bow_N": 3.0}
+    speed = final_state(lossy, commands, round(100.0 / STEP))[3]
+    assert speed == pytest.approx(2.0 * 4.0 / (6.0 + 0.5 * 4.0), rel=1e-5)
 
 
 # ---- the direction of one drive
