@@ -1,15 +1,20 @@
 """The vessel `pendulum` as it might really be, integrated by scipy from its equation of motion.
 
-The integration shares no code with boatsim. A motor drives the pendulum with a recorded torque.
+The integration shares no code with boatsim. A motor drives the pendulum with a recorded torque; the
+usual one turns it over the top.
 """
 
 from dataclasses import dataclass
 from math import exp, sin, tanh
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
@@ -46,9 +51,7 @@ def torque(t: float, seed: int, amplitude: float) -> float:
 def acceleration(t: float, phi: float, p: float, seed: int, real: Pendulum) -> float:
     """Angular acceleration [rad/s^2] of the real pendulum."""
     moment = real.gain * torque(t, seed, real.amplitude) - real.damping * p
-    moment -= real.moment * (
-        sin(phi) + real.second * sin(2.0 * phi) + real.third * sin(3.0 * phi)
-    )
+    moment -= real.moment * (sin(phi) + real.second * sin(2.0 * phi) + real.third * sin(3.0 * phi))
     stiction = (real.static_ratio - 1.0) * exp(-((p / STRIBECK) ** 2))
     moment -= real.friction * (1.0 + stiction) * tanh(p / STICKS)
     if real.pushed and PUSH[0] < t < PUSH[1]:
@@ -70,3 +73,11 @@ def recording(seed: int, seconds: float, real: Pendulum) -> Recording:
     phi = run.y[0] + 1e-3 * rng.standard_normal(len(t))
     signals = {"phi_rad": phi, "torque_Nm": recorded}
     return Recording(f"run {seed}", t, signals, path=FILE).thinned(RATE)
+
+
+def diagnosed(real: Pendulum, seconds: float) -> dict[str, Any]:
+    """The answer of a diagnosis with all candidates of two runs; a third one is held out."""
+    runs = [recording(seed, seconds, real) for seed in (1, 2, 3)]
+    vessels = {FILE: vessel.load_vessel("pendulum")}
+    loaded = LoadedRecordings(runs[:2], runs[2:], vessels, "run 3", horizon=1.0)
+    return pipeline.diagnose_loaded(loaded).findings.answer

@@ -6,11 +6,13 @@ for each of its components: no filter acts.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -134,3 +136,14 @@ def recorded(seed: int, rig: Rig) -> Recording:
     signals = {axis.column: run.y[0] + noise[0], "wave_m": wave(seed, rig, t)[0] + noise[1]}
     notes = Notes(noise={"position_sd_m": SENSOR, "heave_sd_m": SENSOR})
     return Recording(f"run {seed}", t, signals, path=FILE, notes=notes).thinned(10.0)
+
+
+def diagnosed(rig: Rig, folder: Path, excited: float | None = 1.0) -> dict[str, Any]:
+    """The answer of a diagnosis with all candidates of two runs; a third one is held out.
+
+    The vessel file contains the given share of the wave forces.
+    """
+    runs = [recorded(seed, rig) for seed in (1, 2, 3)]
+    vessels = {FILE: section(folder, rig.axis, excited)}
+    loaded = LoadedRecordings(runs[:2], runs[2:], vessels, "run 3", horizon=10.0)
+    return pipeline.diagnose_loaded(loaded).findings.answer
