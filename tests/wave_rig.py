@@ -51,6 +51,7 @@ use = "linear_damping"
 [diagnosis]
 rate = 10.0
 reasons = {{ rate = "ten rows in a period of the wave" }}
+coefficient_uncertainty = {{ {uncertain} }}
 facts = {{ guided = true, indoors = true, forward_speed_mps = 0.0 }}
 """
 HYDROSTATICS = """
@@ -90,9 +91,10 @@ class Rig:
     seconds: float = 40.0
 
 
-def section(folder: Path, axis: Axis, excited: float | None) -> Vessel:
+def section(folder: Path, axis: Axis, excited: float | None, uncertain: float = 0.05) -> Vessel:
     """The section as a vessel, with this share of the wave forces; None: without the effect."""
-    text = SECTION.format(axis=axis.name, damping=axis.damping)
+    kinds = "" if excited is None else f"wave = {uncertain}"
+    text = SECTION.format(axis=axis.name, damping=axis.damping, uncertain=kinds)
     if axis.restoring:
         text += HYDROSTATICS
     if excited is not None:
