@@ -6,13 +6,14 @@ for each of its components: no filter acts.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.loading import LoadedRecordings
+from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -20,9 +21,10 @@ from boatsim.recordings.table import Notes, Recording
 
 PARTS = ("elevation", "rate", "acceleration")
 SMOOTHING = 1.5 / np.sqrt(9.80665 / 0.4)  # [s] over which drift forces follow the wave, two lags
-SENSOR = 2e-4  # [m] noise of the camera and of the wave probe
+SENSOR = 2e-4  # [m] noise of the camera
 RATE = 20.0  # [Hz] of both
 FILE = Path("tank.csv")
+SEEDS = (1, 2, 3)  # of the runs; the last one is held out
 HULL = """<mujoco model="section"><worldbody><body name="hull">
 <geom type="box" size="0.3 0.2 0.13"/></body></worldbody></mujoco>"""
 SECTION = """
@@ -51,7 +53,7 @@ use = "linear_damping"
 [diagnosis]
 rate = 10.0
 reasons = {{ rate = "ten rows in a period of the wave" }}
-coefficient_uncertainty = {{ {uncertain} }}
+coefficient_uncertainty = {{ wave = {uncertain} }}
 facts = {{ guided = true, indoors = true, forward_speed_mps = 0.0 }}
 """
 HYDROSTATICS = """
@@ -89,31 +91,37 @@ class Rig:
     height: float = 0.012  # [m] amplitude of a regular wave, standard deviation of an irregular one
     regular: bool = False
     seconds: float = 40.0
+    probe_sd: float = 2e-5  # [m] noise of the wave probe
 
 
-def section(folder: Path, axis: Axis, excited: float | None, uncertain: float = 0.05) -> Vessel:
-    """The section as a vessel, with this share of the wave forces; None: without the effect."""
-    kinds = "" if excited is None else f"wave = {uncertain}"
-    text = SECTION.format(axis=axis.name, damping=axis.damping, uncertain=kinds)
+def section(folder: Path, axis: Axis, excited: float, uncertain: float) -> Vessel:
+    """The section as a vessel with this share of the wave forces, uncertain by that share."""
+    text = SECTION.format(axis=axis.name, damping=axis.damping, uncertain=uncertain)
     if axis.restoring:
         text += HYDROSTATICS
-    if excited is not None:
-        text += '\n[[effect]]\nuse = "wave_excitation"\non = { elevation = "wave_m" }\n'
-        for part, value in zip(PARTS, axis.excitation, strict=True):
-            text += f"{axis.name}_{part} = {excited * value:.6g}\n"
+    text += '\n[[effect]]\nuse = "wave_excitation"\non = { elevation = "wave_m" }\n'
+    for part, value in zip(PARTS, axis.excitation, strict=True):
+        text += f"{axis.name}_{part} = {excited * value:.6g}\n"
     (folder / "hull.xml").write_text(HULL)
     (folder / "vessel.toml").write_text(text)
     return vessel.load_vessel(str(folder))
 
 
+def frequencies(seed: int, rig: Rig) -> Array:
+    """Frequencies of the components of a wave [rad/s]: of one, or of 30 with random phases."""
+    rng = np.random.default_rng(seed)
+    if rig.regular:
+        return rng.uniform(4.0, 7.0, 1)
+    return rng.normal(5.5, 1.0, 30)
+
+
 def wave(seed: int, rig: Rig, t: Array) -> Array:
     """Elevation [m], rate [m/s] and acceleration [m/s^2] (3, N) of a wave that arrives in 4 s."""
-    rng = np.random.default_rng(seed)
-    size, w, phase = np.array([rig.height]), rng.uniform(4.0, 7.0, 1), np.zeros(1)
+    w = frequencies(seed, rig)
+    size, phase = np.array([rig.height]), np.zeros(1)
     if not rig.regular:
-        w = rng.normal(5.5, 1.0, 30)
-        phase = rng.uniform(0.0, 2.0 * np.pi, 30)
-        size = np.full(30, rig.height * np.sqrt(2.0 / 30))
+        phase = np.random.default_rng(50 + seed).uniform(0.0, 2.0 * np.pi, len(w))
+        size = np.full(len(w), rig.height * np.sqrt(2.0 / len(w)))
     angle = np.outer(w, t) + phase[:, None]
     arrived = np.clip(t / 4.0, 0.0, 1.0)
     parts = [size @ np.sin(angle), (size * w) @ np.cos(angle), -(size * w**2) @ np.sin(angle)]
@@ -134,18 +142,19 @@ def recorded(seed: int, rig: Rig) -> Recording:
     t = np.arange(0.0, rig.seconds, 1.0 / RATE)
     begin = (rig.released, 0.0, 0.0, 0.0)
     run = solve_ivp(slopes, (0.0, rig.seconds), begin, "RK45", t, rtol=1e-8, max_step=0.05)
-    noise = SENSOR * np.random.default_rng(100 + seed).standard_normal((2, len(t)))
-    signals = {axis.column: run.y[0] + noise[0], "wave_m": wave(seed, rig, t)[0] + noise[1]}
+    noise = np.random.default_rng(100 + seed).standard_normal((2, len(t)))
+    elevation = wave(seed, rig, t)[0] + rig.probe_sd * noise[1]
+    signals = {axis.column: run.y[0] + SENSOR * noise[0], "wave_m": elevation}
     notes = Notes(noise={"position_sd_m": SENSOR, "heave_sd_m": SENSOR})
     return Recording(f"run {seed}", t, signals, path=FILE, notes=notes).thinned(10.0)
 
 
-def diagnosed(rig: Rig, folder: Path, excited: float | None = 1.0) -> dict[str, Any]:
-    """The answer of a diagnosis with all candidates of two runs; a third one is held out.
+def diagnosed(rig: Rig, folder: Path, excited: float = 1.0, uncertain: float = 0.05) -> Diagnosis:
+    """A diagnosis with all candidates of the runs of two seeds; a third run is held out.
 
-    The vessel file contains the given share of the wave forces.
+    The vessel file contains the given share of the wave forces, with a relative uncertainty.
     """
-    runs = [recorded(seed, rig) for seed in (1, 2, 3)]
-    vessels = {FILE: section(folder, rig.axis, excited)}
-    loaded = LoadedRecordings(runs[:2], runs[2:], vessels, "run 3", horizon=10.0)
-    return pipeline.diagnose_loaded(loaded).findings.answer
+    runs = [recorded(seed, rig) for seed in SEEDS]
+    vessels = {FILE: section(folder, rig.axis, excited, uncertain)}
+    loaded = LoadedRecordings(runs[:2], runs[2:], vessels, runs[2].name, horizon=10.0)
+    return pipeline.diagnose_loaded(loaded)
