@@ -1,12 +1,11 @@
 """A synthetic pendulum with a known truth: noise of a measured torque, pushes, rest, and names."""
 
 import json
-from math import sin, tanh
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
@@ -22,43 +21,17 @@ from boatsim.physics import vessel
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording, TimedCommands
 from tests.boats import box_in_measured_wave
+from tests.driven_pendulum import FILE, PUSH, Pendulum, recording
 
-INERTIA, MOMENT = 0.147, 3.0  # [kg m^2], [N m] of the vessel file
-GAIN, FRICTION, DAMPING = 0.8, 0.15, 0.013  # of the truth: [-], [N m], [N m s]
-PUSH = (11.0, 11.5, 2.5)  # [s], [s], [N m] of a hand that no channel records
+GAIN, FRICTION = 0.8, 0.15  # of the truth: [-], [N m]
 PENDULUM = vessel.load_vessel("pendulum")
-FILE = Path("rig.csv")
-OMEGA = (1.1, 2.9, 4.3, 6.1)  # [rad/s] of the torque
-
-
-def torque(t: float, seed: int) -> float:
-    """Recorded torque [N m]: four sines with random phases."""
-    phases = np.random.default_rng(seed).uniform(0.0, 6.0, 4)
-    return float(sum(0.9 * sin(w * t + a) for w, a in zip(OMEGA, phases, strict=True)))
-
-
-def recording(seed: int, seconds: float, push: bool) -> Recording:
-    """A run of the true pendulum at 200 Hz, with noise of the encoder and of the torque."""
-
-    def rates(t: float, y: np.ndarray) -> tuple[float, float]:
-        moment = GAIN * torque(t, seed) - MOMENT * sin(y[0]) - DAMPING * y[1]
-        moment -= FRICTION * tanh(y[1] / 0.005)
-        if push and PUSH[0] < t < PUSH[1]:
-            moment += PUSH[2]
-        return y[1], moment / INERTIA
-
-    t = np.arange(0.0, seconds, 0.005)
-    run = solve_ivp(rates, (0.0, seconds), (0.0, 0.0), "LSODA", t, rtol=1e-7, max_step=0.01)
-    rng = np.random.default_rng(100 + seed)
-    recorded = np.array([torque(one, seed) for one in t]) + 0.3 * rng.standard_normal(len(t))
-    phi = run.y[0] + 1e-3 * rng.standard_normal(len(t))
-    return Recording(f"run {seed}", t, {"phi_rad": phi, "torque_Nm": recorded}, path=FILE)
 
 
 @pytest.mark.slow
 def test_the_diagnosis_names_the_friction_and_the_gain_and_reports_the_push() -> None:
-    runs = [recording(1, 20.0, True).thinned(31.0), recording(2, 20.0, False).thinned(31.0)]
-    held_out = recording(3, 15.0, False).thinned(31.0)
+    real = Pendulum(gain=GAIN, friction=FRICTION, torque_sd=0.3)
+    runs = [recording(1, 20.0, replace(real, pushed=True)), recording(2, 20.0, real)]
+    held_out = recording(3, 15.0, real)
     loaded = LoadedRecordings(runs, [held_out], {FILE: PENDULUM}, "run 3", horizon=1.0)
     answer = pipeline.diagnose_loaded(loaded).findings.answer
     named = {effect["name"]: effect["parameters"] for effect in answer["effects"]}

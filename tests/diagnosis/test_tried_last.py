@@ -12,6 +12,7 @@ from boatsim.physics.vessel import load_vessel
 
 TRACK = {"track_m": (0.0, 0.0, 1.0, 0.5)}
 START = (0.0, 0.1, 0.3)  # the side of the hull is 0.1 m from the fender
+FENDER, PLACE = 80.0, 0.5  # [N/m], [m] to the east
 
 
 def test_a_quay_is_tried_last_only_where_the_boat_stays_near_a_place() -> None:
@@ -30,12 +31,19 @@ def test_a_requested_quay_is_an_ordinary_candidate() -> None:
 
 @pytest.mark.slow
 def test_a_quay_is_found_without_a_request_and_predicts_the_next_run(tmp_path: Path) -> None:
-    runs = [recorded(Real(quay=(80.0, 0.5)), seed, start=START) for seed in (1, 2, 3)]
+    runs = [recorded(Real(quay=(FENDER, PLACE)), seed, start=START) for seed in (1, 2, 3)]
     answer = diagnosed(runs, tmp_path, "trial_boat")
-    found = {one["name"]: one for one in (*answer["effects"], *answer["also_possible"])}
-    assert set(found) == {"quay"}
-    toward = found["quay"]["parameters"]["toward_rad"]
-    assert abs(toward["value"] + 0.5 * np.pi) < max(3.0 * toward["sd"], 0.2)
+    (found,) = answer["effects"]
+    assert found["name"] == "quay" and not answer["also_possible"]
+    values = found["parameters"]
+    assert abs(values["toward_rad"]["value"] + 0.5 * np.pi) < 0.1
+    furthest = max(float(run["y_m"].max()) for run in runs)
+    side = furthest + 0.5 * load_vessel("trial_boat").beam
+    assert abs(side - values["overlap_m"]["value"] - PLACE) < 0.02
+    # pressed in by less than 0.03 m, the fender shows that it is elastic, but hardly how stiff it is
+    stiffness = values["stiffness_Npm"]
+    assert abs(stiffness["value"] - FENDER) < 2.0 * stiffness["sd"]
+    assert 0.5 * FENDER < stiffness["value"] < 2.0 * FENDER
     assert "quay" in answer["tried"]
     errors = answer["fit"]["position_rms_m"]
     assert errors["patched"] < 0.5 * errors["recalibrated"]

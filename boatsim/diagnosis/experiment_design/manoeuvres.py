@@ -107,7 +107,8 @@ def available_manoeuvres(
     """Return the manoeuvres that a vessel can perform, as candidates for the next experiment.
 
     A boat that can go astern performs manoeuvres around rest, other vessels around the speed of
-    their recordings. A hull without commands is released at another roll angle.
+    their recordings. A hull without commands is released at another roll angle; without roll
+    either, there is no manoeuvre.
 
     Args:
         vessel: The vessel.
@@ -135,6 +136,8 @@ def _duration(seconds: float, vessel: Vessel) -> float:
 
 
 def _roll_releases(vessel: Vessel, roll_angle: float, config: PlanConfig) -> tuple[Manoeuvre, ...]:
+    if "roll" not in vessel.dof:
+        return ()
     duration = _duration(config.boat_duration, vessel)
     found = []
     for share in config.release_shares:

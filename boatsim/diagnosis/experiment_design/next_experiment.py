@@ -32,6 +32,7 @@ from boatsim.files import toml_value
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_reference
 from boatsim.physics.groups import without_group
+from boatsim.physics.signals import motion_signals
 from boatsim.physics.vessel import Vessel
 
 # [s] integration step written into next.toml for a hull of 1.2 m; the diagnosis does not use it
@@ -47,7 +48,7 @@ class Plan:
 
     Attributes:
         manoeuvre: Name of the manoeuvre.
-        start: Initial x, y [m], psi, phi [rad] and u [m/s].
+        start: Initial pose in the degrees of freedom, such as x, y [m] and psi [rad], and u [m/s].
         times: Times [s] from which the rows of `levels` hold.
         levels: Values of the commands.
         duration: Duration [s].
@@ -132,8 +133,11 @@ def _plan(
     simulated: SimulatedManoeuvre, separates: tuple[str, ...], gains: Mapping[str, float]
 ) -> Plan:
     manoeuvre = simulated.manoeuvre
-    names = ("x", "y", "psi", "u") if len(simulated.start) == 6 else ("phi",)
-    start = dict(zip(names, simulated.start.tolist(), strict=False))
+    signals = motion_signals(simulated.recording.program.vessel.dof)
+    start = {}
+    for signal, value in zip(signals, simulated.start.tolist(), strict=True):
+        if not signal.rate or signal.symbol == "u":
+            start[signal.symbol] = value
     return Plan(
         manoeuvre.name,
         start,

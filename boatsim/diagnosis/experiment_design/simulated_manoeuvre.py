@@ -174,7 +174,8 @@ def _start(problem: Problem, fit: Fit, manoeuvre: Manoeuvre) -> Array:
     nq = len(axes)
     state = np.zeros(2 * nq)
     if "surge" not in axes:
-        state[axes.index("roll")] = manoeuvre.release_angle
+        if "roll" in axes:
+            state[axes.index("roll")] = manoeuvre.release_angle
         return state
     for channel, code in enumerate(first.codes):
         if code < nq and axes[code] in ("surge", "sway"):

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 import pytest
 from alike import few
-from boats import PLANAR, ROLL, written
+from boats import PLANAR, ROLL, box_in_measured_wave, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
@@ -401,6 +401,25 @@ def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     file.write_text(next_experiment.scenario_text(plan, boat))
     done = run(scenario.load(str(file))).recording
     assert done["phi_rad"][0] == pytest.approx(0.15) and done["phi_rad"].min() < -0.14
+
+
+def test_without_commands_only_a_hull_that_rolls_has_manoeuvres(tmp_path):
+    rolls = vessel.load_vessel(str(written(tmp_path, "test_roller", ROLL)))
+    assert len(available_manoeuvres(rolls, {}, 0.1, False)) == len(DEFAULT.plan.release_shares)
+    sways = replace(rolls, dof=("sway", "heave"))
+    assert available_manoeuvres(sways, {}, 0.0, False) == ()
+
+
+def test_a_plan_starts_each_degree_of_freedom_at_its_own_place(tmp_path):
+    """A section that sways, heaves and rolls has as many states as a boat in the plane."""
+    section = box_in_measured_wave(tmp_path)
+    recording = SimpleNamespace(program=SimpleNamespace(vessel=section))
+    release = Manoeuvre("a release", duration=24.0, release_angle=0.15)
+    start = np.array([0.0, 0.0, 0.15, 0.0, 0.0, 0.0])
+    simulated = SimpleNamespace(manoeuvre=release, recording=recording, start=start)
+    plan = next_experiment._plan(simulated, (), {})
+    assert plan.start == {"y": 0.0, "z": 0.0, "phi": 0.15}
+    assert "\nphi = 0.15\n" in next_experiment.scenario_text(plan, section)
 
 
 def kinds(*names: str) -> list:
