@@ -46,6 +46,29 @@ def check_values(work: ConversionState, name: str, given: Samples) -> Samples:
     return given
 
 
+def drop_half_fixes(work: ConversionState) -> None:
+    """Remove coordinates whose other one is missing, in a log that has both in the same rows.
+
+    What tells good positions from bad ones compares both.
+
+    Args:
+        work: State of the conversion, which gets remarks.
+    """
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or np.array_equal(x.given.t, y.given.t):
+        return
+    whole = np.intersect1d(x.given.t, y.given.t)
+    half = len(x.given.t) + len(y.given.t) - 2 * len(whole)
+    if len(whole) < MOST_IN_ROWS * max(len(x.given.t), len(y.given.t)):
+        return
+    for name, column in (("x_m", x), ("y_m", y)):
+        kept = np.isin(column.given.t, whole)
+        given = Samples(column.given.t[kept], column.given.values[kept])
+        work.columns[name] = replace(column, given=given)
+    what = "1 coordinate" if half == 1 else f"{half} coordinates"
+    work.remark(f"x_m, y_m: omitted {what} whose other one is missing")
+
+
 def check_heading(work: ConversionState) -> None:
     """Refuse a heading that the program wrote although no sensor sent one.
 
