@@ -37,6 +37,7 @@ from boatsim.recordings.importing.sample_repairs import (
     check_heading,
     check_values,
     drop_half_fixes,
+    drop_interpolated_wraps,
     drop_queued,
     drop_repeats,
     drop_stale,
@@ -86,6 +87,7 @@ def convert_log(
     drop_half_fixes(work)
     check_heading(work)
     drop_unfixed(work)
+    drop_interpolated_wraps(work)
     drop_repeats(work)
     queues = position_queues(work)
     # before the rhythm of the positions, which would move theirs and leave the angles late

@@ -14,6 +14,7 @@ from boatsim.recordings.importing.queued_messages import Queue, late_samples, qu
 from boatsim.recordings.importing.regular_times import regular_times, values_at_rows
 from boatsim.recordings.importing.resample import Samples
 from boatsim.recordings.importing.track import constant_heading_fault
+from boatsim.recordings.interpolated_wraps import ACROSS_WRAP, interpolated_wrap_rows
 from boatsim.recordings.repeated_values import repeated_rows, stale_rows
 from boatsim.recordings.table import FEWEST_ROWS
 
@@ -107,6 +108,27 @@ def drop_unfixed(work: ConversionState) -> None:
     for name, column in (("x_m", x), ("y_m", y)):
         kept = Samples(column.given.t[first:], column.given.values[first:])
         work.columns[name] = replace(column, given=kept)
+
+
+def drop_interpolated_wraps(work: ConversionState) -> None:
+    """Remove headings that a logger interpolated across the jump from a full turn to zero.
+
+    Args:
+        work: State of the conversion, which gets remarks.
+    """
+    column = work.columns.get("psi_rad")
+    if column is None or column.held:
+        return
+    t, values = column.given.t, column.given.values
+    rows = interpolated_wrap_rows(values)
+    if not rows.any():
+        return
+    first = int(np.argmax(rows))
+    work.remark(
+        f"psi_rad: {int(rows.sum())} of {len(rows)} samples {ACROSS_WRAP}; the first is sample "
+        f"{first + 1}, {t[first] - work.begin:.4g} s after the beginning"
+    )
+    work.columns["psi_rad"] = replace(column, given=Samples(t[~rows], values[~rows]))
 
 
 def drop_repeats(work: ConversionState) -> None:
