@@ -18,6 +18,8 @@ TRUTH = {"true": 1.0, "false": 0.0}
 MINUS_SIGNS = ("\u2212", "\u2013")  # minus sign and dash of typesetters, in place of a hyphen
 # 6'643'210.5 or 6 643 210.5, also with the blanks that do not break
 GROUPS_BY_BLANKS = re.compile(r"[+-]?\d{1,3}(?:['’ \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
+# 1,234.5 between commas has quotes around it, and so has 1,5
+QUOTED_COMMAS = re.compile(r"\s*[+-]?\d[\d,]*,\d+(\.\d*)?\s*")
 MIN_NUMBERS = 0.5  # share of the filled cells that are numbers, in a column of numbers
 MAX_SHOWN = 20  # characters of a cell in a remark
 NUMBER_AND_UNIT = re.compile(
@@ -166,6 +168,18 @@ def number_of_cell(cell: str, separator: str) -> float | None:
         return TRUTH.get(text.lower())
 
 
+def is_number(cell: str, separator: str) -> bool:
+    """Return whether a cell is a number or empty; between commas, commas may be in quotes.
+
+    Args:
+        cell: The text, without quotes.
+        separator: Separator of the table.
+    """
+    if separator == "," and QUOTED_COMMAS.fullmatch(cell):
+        return True
+    return number_of_cell(cell, separator) is not None
+
+
 def _plain_number(cell: str) -> float:
     """The number of a cell. Python accepts 1_000, which is no number here. Raises ValueError."""
     if "_" in cell:
@@ -182,7 +196,7 @@ def _with_decimal_points(cells: Sequence[str]) -> Sequence[str]:
     point = "." if not has_points else ""
     changed = []
     for cell in cells:
-        if re.fullmatch(r"\s*[+-]?\d[\d,]*,\d+(\.\d*)?\s*", cell):
+        if QUOTED_COMMAS.fullmatch(cell):
             cell = cell.replace(",", point)
         changed.append(cell)
     return changed

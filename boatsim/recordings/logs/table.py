@@ -16,7 +16,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.cells import (
     EMPTY_WORDS,
     Cells,
-    number_of_cell,
+    is_number,
 )
 from boatsim.recordings.importing.clocks import (
     calendar_times,
@@ -593,7 +593,7 @@ def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool
     if not filled or 2 * len(filled) < len(header):
         return False
     for cell in filled:
-        if number_of_cell(cell, separator) is not None or len(cell.strip()) > 10:
+        if is_number(cell, separator) or len(cell.strip()) > 10:
             return False
         if seconds_from_dates([cell]) is not None:
             return False

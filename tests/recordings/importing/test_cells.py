@@ -104,3 +104,13 @@ def test_a_remark_names_row_column_and_first_cell(tmp_path):
         f"{tmp_path / 'log.csv'}: row 13, column x: 1 cell is no number and is left empty, "
         "first '####'",
     )
+
+
+@pytest.mark.parametrize("header", ["time,x,y", None])
+def test_the_first_row_of_quoted_decimal_commas_is_a_row_and_no_units(tmp_path, header):
+    cells = [(f"{0.1 * i:.1f}", f"{i + 0.125:.3f}", f"{-i:.2f}") for i in range(30)]
+    lines = [",".join(f'"{cell}"'.replace(".", ",") for cell in row) for row in cells]
+    log = read(log_of(tmp_path, [header, *lines] if header else lines))
+    x = list(log.signals.values())[1]
+    assert x.values == pytest.approx(np.arange(30) + 0.125)
+    assert x.unit == ""
