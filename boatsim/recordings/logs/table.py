@@ -471,14 +471,19 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
 
 
 def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
-    """Whether points may separate thousands, in a table with commas for decimals."""
+    """Whether commas or points may separate thousands, in a table without commas between cells."""
     from pyarrow import compute
 
     if separator == ",":
         return False
-    whole = compute.match_substring_regex(column, r"^\s*[+-]?\d{1,3}(\.\d{3})*\s*$")
-    pointed = compute.match_substring(column, ".")
-    return bool(compute.all(whole).as_py()) and bool(compute.any(pointed).as_py())
+    has_points = bool(compute.any(compute.match_substring(column, ".")).as_py())
+    has_commas = bool(compute.any(compute.match_substring(column, ",")).as_py())
+    if has_points and has_commas:
+        return True
+    if not has_points and not has_commas:
+        return False
+    whole = compute.match_substring_regex(column, r"^\s*([+-]?\d{1,3}([.,]\d{3})*)?\s*$")
+    return bool(compute.all(whole).as_py())
 
 
 def _read_line_by_line(path: Path, head: _Header) -> _Texts:

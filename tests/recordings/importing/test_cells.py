@@ -114,3 +114,32 @@ def test_the_first_row_of_quoted_decimal_commas_is_a_row_and_no_units(tmp_path, 
     x = list(log.signals.values())[1]
     assert x.values == pytest.approx(np.arange(30) + 0.125)
     assert x.unit == ""
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+@pytest.mark.parametrize("decimals", [0, 1])
+def test_thousands_with_commas_are_read_in_tables_of_spreadsheets(tmp_path, separator, decimals):
+    speed = np.round(np.linspace(850.0, 1350.0, 40), decimals)
+    file = tmp_path / "log.csv"
+    lines = [f"time{separator}n_rpm"]
+    lines += [f"{0.1 * i:.1f}{separator}{x:,.{decimals}f}" for i, x in enumerate(speed)]
+    file.write_text("\n".join(lines) + "\n")
+    log = read(file)
+    assert log.signals["n_rpm"].values == pytest.approx(speed)
+    assert any("column n_rpm: ',' separates thousands" in remark for remark in log.remarks)
+    assert log.signals["n_rpm"].t == pytest.approx(0.1 * np.arange(40))
+
+
+@pytest.mark.parametrize(
+    ("cells", "values"),
+    [
+        (["1,001.7"], [1001.7]),
+        (["1,344", "859.5"], [1344.0, 859.5]),
+        (["1,344", "1,001"], [1.344, 1.001]),  # no second sign
+        (["0,344", "1"], [0.344, 1.0]),
+        (["1,34", "859.5"], [1.34, 859.5]),
+        (["59.900.123", "59,9001", "59,9002"], [math.nan, 59.9001, 59.9002]),
+    ],
+)
+def test_commas_of_thousands_need_two_signs_between_semicolons(cells, values):
+    assert column_of_cells(cells, ";").values == pytest.approx(values, nan_ok=True)
