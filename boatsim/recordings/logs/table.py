@@ -43,6 +43,7 @@ from boatsim.recordings.importing.log import (
 )
 from boatsim.recordings.importing.long_format import SAMPLE, may_be_long
 from boatsim.recordings.importing.long_table import LongTable, signals_of_long_table
+from boatsim.recordings.importing.lost_points import may_have_lost_points
 from boatsim.recordings.importing.table_columns import (
     column_of_texts,
     unit_by_ending,
@@ -465,9 +466,12 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
         if _may_separate_thousands(column, separator):
             return column_of_texts(name, column.to_pylist(), separator)
-        return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
+        values = np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:
         return column_of_texts(name, column.to_pylist(), separator)
+    if may_have_lost_points(values):
+        return column_of_texts(name, column.to_pylist(), separator)
+    return Cells(values)
 
 
 def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
