@@ -119,9 +119,9 @@ class _Run:
 
     def follows(self, values: Array, limit: float) -> bool:
         """Whether thousandths of its numbers follow each other and both neighbours."""
-        steps = [float(values[row]) / THOUSAND - values[other] for row, other in self._ends()]
-        steps += list(np.diff(values[self.rows]) / THOUSAND)
-        return max(map(abs, steps)) <= limit
+        steps = [abs(values[row] / THOUSAND - values[other]) for row, other in self._ends()]
+        steps += list(np.abs(np.diff(values[self.rows])) / THOUSAND)
+        return float(max(steps)) <= limit
 
     def _ends(self) -> list[tuple[int, int]]:
         """Pairs of an end of the run and its neighbour."""
