@@ -12,6 +12,7 @@ from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import Log, Signal, open_log
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.table import read, write_csv
 from tests.recordings.importing.test_proposal_by_motion import DOF, DRIVES, RPM, log_of, simulated
 
 RUN = simulated()
@@ -60,15 +61,20 @@ def test_messages_that_arrive_at_once_do_not_hide_the_sides() -> None:
     assert correlation(written(HEADING, RUN["t"][0] + arrived)) == pytest.approx(expected, abs=0.05)
 
 
-def test_an_import_leaves_out_headings_interpolated_across_a_full_turn_and_reports_them() -> None:
+def test_an_import_empties_headings_interpolated_across_a_turn(tmp_path: Path) -> None:
     rows = np.arange(0, len(RUN["t"]), 5)
     psi = np.interp(RUN["t"], RUN["t"][rows], HEADING[rows])
     log = written(psi, RUN["t"])
     found = convert_log(log, parse_map(tomllib.loads(propose_map(log)), "m.toml"), "m.toml")
-    true = np.interp(found.t, RUN["t"] - RUN["t"][0], RUN["psi"] - RUN["psi"].mean())
-    assert np.abs(np.angle(np.exp(1j * (found["psi_rad"] - true)))).max() < 0.2
-    wrong = np.abs(np.angle(np.exp(1j * (np.radians(psi) - RUN["psi"] + RUN["psi"].mean())))) > 0.1
+    assert len(found.t) == len(psi) and np.isfinite(found["x_m"]).all()
+    true = RUN["psi"] - RUN["psi"].mean()
+    assert np.nanmax(np.abs(np.angle(np.exp(1j * (found["psi_rad"] - true))))) < 0.2
+    write_csv(found, tmp_path / "run.csv")
+    again = read(tmp_path / "run.csv")
+    assert np.array_equal(np.isnan(again["psi_rad"]), np.isnan(found["psi_rad"]))
+    wrong = np.abs(np.angle(np.exp(1j * (np.radians(psi) - RUN["psi"] + RUN["psi"].mean())))) > 0.2
     (remark,) = [text for text in found.remarks if "interpolated across a full turn" in text]
+    assert np.isnan(found["psi_rad"][wrong]).all()
     assert int(re.findall(r"(\d+) of", remark)[0]) >= wrong.sum() > 0
     first = float(re.findall(r"([\d.]+) s after the beginning", remark)[0])
     assert first == pytest.approx(0.1 * np.flatnonzero(wrong)[0], abs=0.5)
