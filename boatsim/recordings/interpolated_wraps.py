@@ -53,6 +53,23 @@ def interpolated_wrap_rows(angle: Array, turn: float = TURN) -> NDArray[np.bool_
     return rows
 
 
+def empty_across_wrap(angle: Array) -> NDArray[np.bool_]:
+    """Return which rows of an angle are empty between two that lie about a full turn apart.
+
+    Args:
+        angle: Angle (N,) [rad] as written, not unwrapped; nan where it is empty.
+
+    Returns:
+        True (N,) for these rows.
+    """
+    known = np.flatnonzero(np.isfinite(angle))
+    rows = np.zeros(len(angle), dtype=np.bool_)
+    jumps = np.abs(np.diff(angle[known])) > 0.5 * TURN
+    for before, after in zip(known[:-1][jumps], known[1:][jumps], strict=True):
+        rows[before + 1 : after] = True
+    return rows
+
+
 def _groups(large: NDArray[np.bool_], sign: Array) -> list[tuple[int, int]]:
     """First and last step of the groups of neighbouring large steps in one direction."""
     found = list[tuple[int, int]]()

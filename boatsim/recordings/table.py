@@ -23,7 +23,11 @@ from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.conversion import Curve, Range
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.interpolated_wraps import ACROSS_WRAP, without_interpolated_wraps
+from boatsim.recordings.interpolated_wraps import (
+    ACROSS_WRAP,
+    empty_across_wrap,
+    without_interpolated_wraps,
+)
 from boatsim.recordings.latency import shifted_columns
 from boatsim.recordings.motion_clock import times_by_motion
 from boatsim.recordings.notebook.arrow import signal_table
@@ -649,7 +653,8 @@ def allowed_empty_rows(
 
     A signal that is empty in many rows is measured less often than rows are written. Other signals
     may be empty in the rows that exist for such a signal. In a row with nothing but commands all of
-    them may be empty. Any other empty cell is a mistake in the file.
+    them may be empty. A heading may be empty where it jumps by a full turn, because an import left
+    out what was interpolated across the jump. Any other empty cell is a mistake in the file.
     """
     slow, others = {}, {}
     for name, values in columns.items():
@@ -667,6 +672,8 @@ def allowed_empty_rows(
         allowed |= ~np.all(list(slow.values()), axis=0)
     for name, empty in others.items():
         others[name] = empty & allowed
+        if name == "psi_rad":
+            others[name] |= empty_across_wrap(columns[name])
     return slow | others
 
 

@@ -7,7 +7,7 @@ import pytest
 from turning_ship import winding_ship
 
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
-from boatsim.recordings.interpolated_wraps import interpolated_wrap_rows
+from boatsim.recordings.interpolated_wraps import empty_across_wrap, interpolated_wrap_rows
 from boatsim.recordings.table import Recording, read, write_csv
 
 TURN = 2.0 * np.pi
@@ -51,3 +51,9 @@ def test_a_recording_keeps_its_true_heading_and_says_what_is_not_used(tmp_path: 
     assert np.abs(found["psi_rad"] - true)[known].max() < 1e-6
     [finding] = cleaning_findings(found)
     assert finding.name == "heading_across_wrap" and finding.kind == "mended"
+
+
+def test_a_heading_may_be_empty_where_it_jumps_by_a_turn_and_nowhere_else() -> None:
+    empty = np.nan
+    angle = np.array([empty, 6.1, 6.2, empty, empty, 0.1, 0.2, empty, 0.3, empty])
+    assert np.flatnonzero(empty_across_wrap(angle)).tolist() == [3, 4]

@@ -18,6 +18,9 @@ TRUTH = {"true": 1.0, "false": 0.0}
 MINUS_SIGNS = ("\u2212", "\u2013")  # minus sign and dash of typesetters, in place of a hyphen
 # 6'643'210.5 or 6 643 210.5, also with the blanks that do not break
 GROUPS_BY_BLANKS = re.compile(r"[+-]?\d{1,3}(?:['’ \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
+# 1,234.5 between commas has quotes around it, and so has 1,5
+QUOTED_COMMAS = re.compile(r"\s*[+-]?\d[\d,]*,\d+(\.\d*)?\s*")
+GROUPS_BY_COMMAS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+\.\d*")  # 1,234.5
 MIN_NUMBERS = 0.5  # share of the filled cells that are numbers, in a column of numbers
 MAX_SHOWN = 20  # characters of a cell in a remark
 NUMBER_AND_UNIT = re.compile(
@@ -94,28 +97,36 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
 def separates_thousands(cells: Sequence[str], mark: str) -> bool:
     """Return whether a comma or a point separates thousands in the numbers of a column.
 
-    Two signs are needed: three digits follow each mark, and a number has two marks or all numbers
-    without one are whole and below 1000.
+    Three digits must follow each mark. A second sign is needed: a number has two marks, or all
+    numbers without one are whole and below 1000, or a number has decimals behind the other mark.
 
     Args:
         cells: Texts of the column (N,).
         mark: Comma or point.
     """
-    grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:\{mark}\d{{3}})+")
-    has_groups, has_small, has_two = False, False, False
+    other = "." if mark == "," else ","
+    grouped = re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:\{mark}\d{{3}})+(\{other}\d*)?")
+    small = re.compile(rf"[+-]?\d{{1,3}}(\{other}\d*)?")
+    has_groups, has_small, has_two, has_decimals, has_both = False, False, False, False, False
     for cell in cells:
         text = cell.strip()
         if not any(map(str.isdigit, text)):
             continue
-        if mark in text:
-            if not grouped.fullmatch(text):
-                return False
+        form = grouped if mark in text else small
+        found = form.fullmatch(text)
+        if found is None:
+            return False
+        if found[1]:
+            has_decimals = True
+            has_both = has_both or mark in text
+        elif mark in text:
             has_groups = True
             has_two = has_two or text.count(mark) > 1
-        elif re.fullmatch(r"[+-]?\d{1,3}", text):
-            has_small = True
         else:
-            return False
+            has_small = True
+    if has_decimals:
+        # 59.900 among 59,9001 is damaged; a program with points writes commas between thousands
+        return has_both or (has_groups and mark == ",")
     return has_groups and (has_small or has_two)
 
 
@@ -157,6 +168,8 @@ def number_of_cell(cell: str, separator: str) -> float | None:
     if separator != "," and "," in text:
         if text.rfind(",") > text.rfind("."):
             text = text.replace(".", "")  # of thousands
+        elif GROUPS_BY_COMMAS.fullmatch(text):
+            text = text.replace(",", "")
         text = text.replace(",", ".")
     try:
         if "_" in text:
@@ -164,6 +177,18 @@ def number_of_cell(cell: str, separator: str) -> float | None:
         return float(text)
     except ValueError:
         return TRUTH.get(text.lower())
+
+
+def is_number(cell: str, separator: str) -> bool:
+    """Return whether a cell is a number or empty; between commas, commas may be in quotes.
+
+    Args:
+        cell: The text, without quotes.
+        separator: Separator of the table.
+    """
+    if separator == "," and QUOTED_COMMAS.fullmatch(cell):
+        return True
+    return number_of_cell(cell, separator) is not None
 
 
 def _plain_number(cell: str) -> float:
@@ -182,7 +207,7 @@ def _with_decimal_points(cells: Sequence[str]) -> Sequence[str]:
     point = "." if not has_points else ""
     changed = []
     for cell in cells:
-        if re.fullmatch(r"\s*[+-]?\d[\d,]*,\d+(\.\d*)?\s*", cell):
+        if QUOTED_COMMAS.fullmatch(cell):
             cell = cell.replace(",", point)
         changed.append(cell)
     return changed

@@ -36,6 +36,8 @@ from boatsim.recordings.importing.sample_repairs import (
     PLACE,
     check_heading,
     check_values,
+    drop_half_fixes,
+    drop_interpolated_wraps,
     drop_queued,
     drop_repeats,
     drop_stale,
@@ -82,8 +84,10 @@ def convert_log(
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(check_values(work, name, clean_samples(t, values)), is_held)
     remark_disorder(work, disorder)
+    drop_half_fixes(work)
     check_heading(work)
     drop_unfixed(work)
+    drop_interpolated_wraps(work)
     drop_repeats(work)
     queues = position_queues(work)
     # before the rhythm of the positions, which would move theirs and leave the angles late

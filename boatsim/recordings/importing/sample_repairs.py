@@ -14,6 +14,7 @@ from boatsim.recordings.importing.queued_messages import Queue, late_samples, qu
 from boatsim.recordings.importing.regular_times import regular_times, values_at_rows
 from boatsim.recordings.importing.resample import Samples
 from boatsim.recordings.importing.track import constant_heading_fault
+from boatsim.recordings.interpolated_wraps import ACROSS_WRAP, interpolated_wrap_rows
 from boatsim.recordings.repeated_values import repeated_rows, stale_rows
 from boatsim.recordings.table import FEWEST_ROWS
 
@@ -44,6 +45,29 @@ def check_values(work: ConversionState, name: str, given: Samples) -> Samples:
             f"{work.file}: columns.{name} = {largest:.3g}; no measurement is as large as {HUGE:g}"
         )
     return given
+
+
+def drop_half_fixes(work: ConversionState) -> None:
+    """Remove coordinates whose other one is missing, in a log that has both in the same rows.
+
+    What tells good positions from bad ones compares both.
+
+    Args:
+        work: State of the conversion, which gets remarks.
+    """
+    x, y = work.columns.get("x_m"), work.columns.get("y_m")
+    if x is None or y is None or np.array_equal(x.given.t, y.given.t):
+        return
+    whole = np.intersect1d(x.given.t, y.given.t)
+    half = len(x.given.t) + len(y.given.t) - 2 * len(whole)
+    if len(whole) < MOST_IN_ROWS * max(len(x.given.t), len(y.given.t)):
+        return
+    for name, column in (("x_m", x), ("y_m", y)):
+        kept = np.isin(column.given.t, whole)
+        given = Samples(column.given.t[kept], column.given.values[kept])
+        work.columns[name] = replace(column, given=given)
+    what = "1 coordinate" if half == 1 else f"{half} coordinates"
+    work.remark(f"x_m, y_m: omitted {what} whose other one is missing")
 
 
 def check_heading(work: ConversionState) -> None:
@@ -84,6 +108,27 @@ def drop_unfixed(work: ConversionState) -> None:
     for name, column in (("x_m", x), ("y_m", y)):
         kept = Samples(column.given.t[first:], column.given.values[first:])
         work.columns[name] = replace(column, given=kept)
+
+
+def drop_interpolated_wraps(work: ConversionState) -> None:
+    """Remove headings that a logger interpolated across the jump from a full turn to zero.
+
+    Args:
+        work: State of the conversion, which gets remarks.
+    """
+    column = work.columns.get("psi_rad")
+    if column is None or column.held:
+        return
+    t, values = column.given.t, column.given.values
+    rows = interpolated_wrap_rows(values)
+    if not rows.any():
+        return
+    first = int(np.argmax(rows))
+    work.remark(
+        f"psi_rad: {int(rows.sum())} of {len(rows)} samples {ACROSS_WRAP}; the first is sample "
+        f"{first + 1}, {t[first] - work.begin:.4g} s after the beginning"
+    )
+    work.columns["psi_rad"] = replace(column, given=Samples(t[~rows], values[~rows]))
 
 
 def drop_repeats(work: ConversionState) -> None:

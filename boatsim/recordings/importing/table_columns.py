@@ -12,6 +12,7 @@ from boatsim.recordings.importing.coordinates import (
     degrees_of_texts,
     kind_of_place,
 )
+from boatsim.recordings.importing.lost_points import with_lost_points
 from boatsim.recordings.importing.missing_values import placeholder_rows
 from boatsim.recordings.notes import unit_of
 
@@ -20,7 +21,7 @@ PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
 
 def column_of_texts(name: str, cells: Sequence[str], separator: str) -> Cells:
     """Numbers of the text cells of a column; those of a place may have degrees and minutes."""
-    found = column_of_cells(cells, separator)
+    found = with_lost_points(column_of_cells(cells, separator), cells)
     if kind_of_place(name) and found.unit.upper() in HEMISPHERES:
         sign = HEMISPHERES[found.unit.upper()]
         return replace(found, values=sign * found.values, unit="")

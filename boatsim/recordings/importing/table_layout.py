@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from itertools import repeat
 
-from boatsim.recordings.importing.cells import number_of_cell
+from boatsim.recordings.importing.cells import is_number
 from boatsim.recordings.importing.dates import seconds_from_dates
 
 SEPARATORS = ",;\t|"
@@ -59,7 +59,7 @@ def header_line(lines: Sequence[str]) -> int:
 
 def is_row_of_numbers(cells: Sequence[str], separator: str) -> bool:
     """Whether all cells of a line are numbers or empty, so that it is no header."""
-    return None not in map(number_of_cell, cells, repeat(separator))
+    return all(map(is_number, cells, repeat(separator)))
 
 
 def is_row_of_table(cells: Sequence[str], following: Sequence[str], separator: str) -> bool:
@@ -98,8 +98,7 @@ def _kind_of_cell(cell: str, separator: str) -> str:
     """Whether a cell is a "value" (number or date), a "word" or "" for an empty one."""
     if not cell.strip():
         return ""
-    is_value = number_of_cell(cell, separator) is not None
-    if is_value or seconds_from_dates([cell]) is not None:
+    if is_number(cell, separator) or seconds_from_dates([cell]) is not None:
         return "value"
     return "word"
 
@@ -131,7 +130,7 @@ def _count_numbers(lines: Sequence[str], separator: str) -> int:
         except csv.Error:
             continue
         if len(cells) > 1:
-            count += len(cells) - list(map(number_of_cell, cells, repeat(separator))).count(None)
+            count += sum(map(is_number, cells, repeat(separator)))
     return count
 
 

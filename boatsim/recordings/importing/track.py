@@ -79,22 +79,48 @@ def track_of(best: Mapping[str, Sequence[Classification]]) -> Track | None:
     Args:
         best: Column -> classified signals, the most probable first.
     """
+    found = positions_of(best)
+    return None if found is None else track_of_positions(*found)
+
+
+def positions_of(
+    best: Mapping[str, Sequence[Classification]],
+) -> tuple[Array, Array, Array] | None:
+    """Return times (N,) [s] and positions (N,) to the north and east [m] of a log.
+
+    Args:
+        best: Column -> classified signals, the most probable first.
+
+    Returns:
+        None without positions.
+    """
     for first, second in (("latitude", "longitude"), ("x_m", "y_m")):
         if not best.get(first) or not best.get(second):
             continue
-        t, north = values_in_si(best[first][0])
-        other, east = values_in_si(best[second][0])
-        if len(t) != len(other) or len(t) < 2:
-            continue
+        t, north, east = _in_common_rows(
+            *values_in_si(best[first][0]), *values_in_si(best[second][0])
+        )
         if first == "latitude":
             there = (north != 0.0) | (east != 0.0)
             t, north, east = t[there], north[there], east[there]
-            if len(t) < 2:
-                continue
+        if len(t) < 2:
+            continue
+        if first == "latitude":
             east = EARTH_RADIUS * np.cos(np.median(north)) * (east - east[0])
             north = EARTH_RADIUS * (north - north[0])
-        return track_of_positions(t, north, east)
+        return t, north, east
     return None
+
+
+def _in_common_rows(t: Array, x: Array, other: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Times (K,) [s] at which both coordinates are known, and their values (K,).
+
+    Equally many coordinates with times of their own are pairs, each one message after the other.
+    """
+    common, rows, others = np.intersect1d(t, other, assume_unique=True, return_indices=True)
+    if len(t) == len(other) and 2 * len(common) < len(t):
+        return t, x, y
+    return common, x[rows], y[others]
 
 
 def constant_heading_fault(t: Array, x: Array, y: Array, psi: Array) -> str:

@@ -10,7 +10,10 @@ import numpy as np
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.motion_names import has_opposite_sense
+from boatsim.recordings.importing.queued_messages import late_samples, queued_positions
 from boatsim.recordings.importing.signal_classification import Classification
+from boatsim.recordings.importing.track import positions_of
+from boatsim.recordings.interpolated_wraps import interpolated_wrap_rows
 
 TIME_DIGITS = 6  # decimals of a time [s]; two samples in one microsecond are one
 MIN_CORRELATION = 0.3  # with the turning, of a signal that steers
@@ -35,15 +38,19 @@ class Turning:
         """
         self.t, self.r = np.empty(0), np.empty(0)
         self.at, self.speed = _speed(best)
+        places = positions_of(best)
+        queues = [] if places is None else list(queued_positions(*places))
+        # Orders that had queued are followed until the longest delay after the last of them
+        self.unknown = [(queue.last, queue.end + DELAYS[-1]) for queue in queues]
         for column in ("r_radps", "psi_rad"):
             if found := best.get(column):
                 g = found[0]
                 t, values = _sorted_samples(g)
+                for queue in queues:
+                    on_time = ~late_samples(t, values, queue)
+                    t, values = t[on_time], values[on_time]
                 if column == "psi_rad" and len(t) > 2:
-                    turn = 2.0 * np.pi
-                    if g.word:
-                        turn /= float(parse(f"x * {g.word}", ()).convert(np.ones(1))[0])
-                    values = np.gradient(np.unwrap(values, period=turn), t)
+                    t, values = _rates_of_turn(t, values, _full_turn(g))
                 is_compass = column == "psi_rad" and "yaw" not in g.tokens
                 is_to_port = enu and not is_compass
                 if is_to_port or not enu and has_opposite_sense(column, g.tokens):
@@ -56,7 +63,7 @@ class Turning:
 
         1: all turning to starboard follows it; 0 where there is no data.
         """
-        return _best_delayed_correlation(signals, self.t, self.r)
+        return _best_delayed_correlation(signals, self.t, self.r, self.unknown)
 
     def steering_signal(
         self, signals: Sequence[Classification]
@@ -64,7 +71,7 @@ class Turning:
         """Return the signal that steers, with its correlation; None where several are possible."""
         turns = [(g, self.correlation((g, 1.0))) for g in signals]
         scores = [
-            abs(c) - abs(_best_delayed_correlation(((g, 1.0),), self.at, self.speed))
+            abs(c) - abs(_best_delayed_correlation(((g, 1.0),), self.at, self.speed, self.unknown))
             for g, c in turns
         ]
         order = np.argsort(scores)[::-1]
@@ -74,6 +81,21 @@ class Turning:
         if rivals:
             return None
         return turns[int(order[0])]
+
+
+def _full_turn(g: Classification) -> float:
+    """A full turn in the unit of a heading."""
+    if g.word:
+        return 2.0 * np.pi / float(parse(f"x * {g.word}", ()).convert(np.ones(1))[0])
+    return 2.0 * np.pi
+
+
+def _rates_of_turn(t: Array, heading: Array, turn: float) -> tuple[Array, Array]:
+    """Times and rates of turn by headings, without those interpolated across a full turn."""
+    measured = ~interpolated_wrap_rows(heading, turn)
+    if measured.sum() > 2:
+        t, heading = t[measured], heading[measured]
+    return t, np.asarray(np.gradient(np.unwrap(heading, period=turn), t))
 
 
 def _sorted_samples(g: Classification) -> tuple[Array, Array]:
@@ -117,11 +139,14 @@ def _most_probable_pair(
 
 
 def _best_delayed_correlation(
-    signals: Sequence[tuple[Classification, float]], t: Array, values: Array
+    signals: Sequence[tuple[Classification, float]],
+    t: Array,
+    values: Array,
+    unknown: Sequence[tuple[float, float]],
 ) -> float:
     """Correlation of a weighted sum of signals with a signal that follows, at the best delay.
 
-    0 without data.
+    0 without data. Times between begin and end of an interval of `unknown` [s] are left out.
     """
     if len(t) < 2 or any(len(g.signal.t) < 2 for g, _ in signals):
         return 0.0
@@ -130,6 +155,8 @@ def _best_delayed_correlation(
         begin = max(begin, float(np.nanmin(g.signal.t)))
     begin += DELAYS[-1]
     rows = np.arange(begin, min(float(t[-1]), begin + MAX_DURATION), 1.0 / RATE)
+    for first, last in unknown:
+        rows = rows[(rows <= first) | (rows >= last)]
     if len(rows) < 10:
         return 0.0
     followed = np.interp(rows, t, values)

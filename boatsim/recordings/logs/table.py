@@ -16,7 +16,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.cells import (
     EMPTY_WORDS,
     Cells,
-    number_of_cell,
+    is_number,
 )
 from boatsim.recordings.importing.clocks import (
     calendar_times,
@@ -43,6 +43,7 @@ from boatsim.recordings.importing.log import (
 )
 from boatsim.recordings.importing.long_format import SAMPLE, may_be_long
 from boatsim.recordings.importing.long_table import LongTable, signals_of_long_table
+from boatsim.recordings.importing.lost_points import may_have_lost_points
 from boatsim.recordings.importing.table_columns import (
     column_of_texts,
     unit_by_ending,
@@ -465,20 +466,28 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
         if _may_separate_thousands(column, separator):
             return column_of_texts(name, column.to_pylist(), separator)
-        return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
+        values = np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:
         return column_of_texts(name, column.to_pylist(), separator)
+    if may_have_lost_points(values):
+        return column_of_texts(name, column.to_pylist(), separator)
+    return Cells(values)
 
 
 def _may_separate_thousands(column: "ChunkedArray", separator: str) -> bool:
-    """Whether points may separate thousands, in a table with commas for decimals."""
+    """Whether commas or points may separate thousands, in a table without commas between cells."""
     from pyarrow import compute
 
     if separator == ",":
         return False
-    whole = compute.match_substring_regex(column, r"^\s*[+-]?\d{1,3}(\.\d{3})*\s*$")
-    pointed = compute.match_substring(column, ".")
-    return bool(compute.all(whole).as_py()) and bool(compute.any(pointed).as_py())
+    has_points = bool(compute.any(compute.match_substring(column, ".")).as_py())
+    has_commas = bool(compute.any(compute.match_substring(column, ",")).as_py())
+    if has_points and has_commas:
+        return True
+    if not has_points and not has_commas:
+        return False
+    whole = compute.match_substring_regex(column, r"^\s*([+-]?\d{1,3}([.,]\d{3})*)?\s*$")
+    return bool(compute.all(whole).as_py())
 
 
 def _read_line_by_line(path: Path, head: _Header) -> _Texts:
@@ -593,7 +602,7 @@ def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool
     if not filled or 2 * len(filled) < len(header):
         return False
     for cell in filled:
-        if number_of_cell(cell, separator) is not None or len(cell.strip()) > 10:
+        if is_number(cell, separator) or len(cell.strip()) > 10:
             return False
         if seconds_from_dates([cell]) is not None:
             return False

@@ -104,3 +104,42 @@ def test_a_remark_names_row_column_and_first_cell(tmp_path):
         f"{tmp_path / 'log.csv'}: row 13, column x: 1 cell is no number and is left empty, "
         "first '####'",
     )
+
+
+@pytest.mark.parametrize("header", ["time,x,y", None])
+def test_the_first_row_of_quoted_decimal_commas_is_a_row_and_no_units(tmp_path, header):
+    cells = [(f"{0.1 * i:.1f}", f"{i + 0.125:.3f}", f"{-i:.2f}") for i in range(30)]
+    lines = [",".join(f'"{cell}"'.replace(".", ",") for cell in row) for row in cells]
+    log = read(log_of(tmp_path, [header, *lines] if header else lines))
+    x = list(log.signals.values())[1]
+    assert x.values == pytest.approx(np.arange(30) + 0.125)
+    assert x.unit == ""
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+@pytest.mark.parametrize("decimals", [0, 1])
+def test_thousands_with_commas_are_read_in_tables_of_spreadsheets(tmp_path, separator, decimals):
+    speed = np.round(np.linspace(850.0, 1350.0, 40), decimals)
+    file = tmp_path / "log.csv"
+    lines = [f"time{separator}n_rpm"]
+    lines += [f"{0.1 * i:.1f}{separator}{x:,.{decimals}f}" for i, x in enumerate(speed)]
+    file.write_text("\n".join(lines) + "\n")
+    log = read(file)
+    assert log.signals["n_rpm"].values == pytest.approx(speed)
+    assert any("column n_rpm: ',' separates thousands" in remark for remark in log.remarks)
+    assert log.signals["n_rpm"].t == pytest.approx(0.1 * np.arange(40))
+
+
+@pytest.mark.parametrize(
+    ("cells", "values"),
+    [
+        (["1,001.7"], [1001.7]),
+        (["1,344", "859.5"], [1344.0, 859.5]),
+        (["1,344", "1,001"], [1.344, 1.001]),  # no second sign
+        (["0,344", "1"], [0.344, 1.0]),
+        (["1,34", "859.5"], [1.34, 859.5]),
+        (["59.900.123", "59,9001", "59,9002"], [math.nan, 59.9001, 59.9002]),
+    ],
+)
+def test_commas_of_thousands_need_two_signs_between_semicolons(cells, values):
+    assert column_of_cells(cells, ";").values == pytest.approx(values, nan_ok=True)

@@ -132,6 +132,31 @@ def test_two_signs_show_that_revolutions_are_in_rpm():
     assert "times the speed of the track" in text
 
 
+@pytest.mark.parametrize("names", [("lat",), ("lon",), ("lat", "lon")])
+def test_a_track_with_empty_cells_shows_what_the_whole_track_shows(names):
+    run = simulated()
+    whole = log_of(run, **shafts(run))
+    signals = dict(whole.signals)
+    for row, name in enumerate(names, 200):
+        signals[name] = Signal(run["t"], signals[name].values.copy())
+        signals[name].values[row] = np.nan
+    assert proposed(Log(whole.path, signals)) == proposed(whole)
+
+
+def test_a_row_with_one_coordinate_does_not_hide_positions_before_the_first_fix():
+    run = simulated()
+    x, y = 300.0 + run["north"], 400.0 + run["east"]
+    x[:20], y[:20] = 0.0, 0.0
+    x[300] = np.nan
+    columns = {"x": x, "y": y, "psi": run["psi"]} | shafts(run, 1.0)
+    log = Log(Path("log.csv"), {name: Signal(run["t"], v) for name, v in columns.items()})
+    text = 'vessel = "otter"\n[columns]\nx_m = "x"\ny_m = "y"\npsi_rad = "psi"\n'
+    text += 'n_port_radps = "n1"\nn_starboard_radps = "n2"\n'
+    found = convert_log(log, parse_map(tomllib.loads(text), "m.toml"), "m.toml")
+    assert np.nanmin(found["x_m"]) > 200.0
+    assert any("omitted 1 coordinate whose" in remark for remark in found.remarks)
+
+
 @pytest.mark.parametrize("speed", [0.0, 0.05])
 def test_one_sign_leaves_the_unit_to_the_owner(speed):
     run = simulated()
