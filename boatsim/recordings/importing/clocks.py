@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.expression import UNITS
+from boatsim.recordings.importing.clock_units import SECONDS, unit_of_clock, without_unit
 from boatsim.recordings.importing.foreign_words import plain_name, translate_words
 
 # Names of columns that are times; a unit may follow
@@ -16,16 +16,6 @@ CLOCK = re.compile(
     r"|t_?(vec|vector|out|axis|log|rx|recv|received|sent|unix|utc|gps|pc)"
     r"|time_?(s|ms|us|ns)?)$"
 )
-ENDING = re.compile(
-    r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|millis|micros|s|ms|us|µs|ns|usec|msec"
-    r"|nsec)[\])]*$"
-)
-UNIT_WORDS = {
-    **dict.fromkeys(("second", "seconds", "sec", "secs"), "s"),
-    **dict.fromkeys(("millisecond", "milliseconds", "millis", "msec"), "ms"),
-    **dict.fromkeys(("µs", "usec", "micros"), "us"),
-    "nsec": "ns",
-}
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
 EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are counted
 TIME_WORDS = {
@@ -88,7 +78,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
         The name; None if there is no such column.
     """
     for name, values in columns.items():
-        plain = re.sub(r"[\s.]+", "_", ENDING.sub("", name.lower())) or "t"
+        plain = re.sub(r"[\s.]+", "_", without_unit(name)) or "t"
         finite = values[np.isfinite(values)]
         if CLOCK.match(plain) and len(finite) > 1 and _may_be_times(finite):
             return name
@@ -297,7 +287,7 @@ def unit_of_counted_times(name: str, values: Array) -> str:
         values: Times (N,).
     """
     finite = values[np.isfinite(values)]
-    if len(finite) < MIN_TIMES or ENDING.search(name.lower()) or _is_epoch(finite):
+    if len(finite) < MIN_TIMES or unit_of_clock(name) or _is_epoch(finite):
         return ""
     if (finite != np.round(finite)).any() or _are_sheet_days(finite):
         return ""
@@ -305,7 +295,7 @@ def unit_of_counted_times(name: str, values: Array) -> str:
     if not step > MAX_STEP:
         return ""
     for unit in ("ms", "us", "ns"):
-        if MIN_COUNTED_STEP < step * UNITS[unit] < MAX_STEP:
+        if MIN_COUNTED_STEP < step * SECONDS[unit] < MAX_STEP:
             return unit
     return ""
 
@@ -321,20 +311,20 @@ def times_in_seconds(name: str, values: Array, unit: str = "") -> Array:
         unit: Unit of the times; by default it is found.
     """
     if unit:
-        return values * UNITS[unit]
+        return values * SECONDS[unit]
     finite = values[np.isfinite(values)]
-    middle = 0.0
+    middle, step, stated = 0.0, 0.0, unit_of_clock(name)
     if len(finite):
         middle = float(np.median(finite))
+    if stated and len(finite) > 1:
+        step = float(np.median(np.abs(np.diff(finite))))
     for seconds in EPOCH_UNITS:
-        if YEAR_2000 < middle * seconds < YEAR_2100:
+        # 3e9 ns since the start are no date in s: the rows would be too far apart
+        if YEAR_2000 < middle * seconds < YEAR_2100 and step * seconds <= MAX_STEP:
             return values * seconds
     if _are_sheet_days(finite):
         return (values - SHEET_EPOCH) * DAY
-    word = "s"
-    if found := ENDING.search(name.lower()):
-        word = UNIT_WORDS.get(found[1], found[1])
-    return values * UNITS[word]
+    return values * SECONDS[stated or "s"]
 
 
 def _are_sheet_days(t: Array) -> bool:

@@ -18,6 +18,7 @@ from boatsim.recordings.importing.cells import (
     Cells,
     number_of_cell,
 )
+from boatsim.recordings.importing.clock_units import SECONDS, unit_of_clock, with_unit
 from boatsim.recordings.importing.clocks import (
     calendar_times,
     seconds_and_fraction,
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
+LONG_UNITS = {"min": "minutes", "h": "hours", "d": "days"}  # of a clock, which get a remark
 MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
 # Share of the rows that may have another number of cells than the header, because a write was cut
 MAX_CUT_ROWS = 0.05
@@ -95,7 +97,8 @@ def _log(
     dates: Collection[str] = (),
 ) -> Log:
     clock = time_column(columns, dates)
-    t, how = _times(columns, clock)
+    unit = units.get(clock, "") if clock is not None else ""
+    t, how = _times(columns, clock, unit, clock in dates)
     has_times = clock is not None or bool(how)
     if not has_times:
         how += ("no column holds times: rows are counted; the map can name it with `time`",)
@@ -122,8 +125,13 @@ def _log(
     return Log(path, signals, remarks=(*remarks, *(f"{path}: {text}" for text in how)))
 
 
-def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tuple[str, ...]]:
-    """Times (N,) [s] of the rows, and remarks on the columns from which they follow."""
+def _times(
+    columns: Mapping[str, Array], clock: str | None, unit: str, are_dates: bool
+) -> tuple[Array, tuple[str, ...]]:
+    """Times (N,) [s] of the rows, and remarks on the columns from which they follow.
+
+    `unit` is the one that the table has for its clock outside of the name; dates are in s already.
+    """
     parts = calendar_times(columns)
     if parts is None or clock not in (None, *parts.names):
         parts = seconds_and_fraction(columns, clock)
@@ -132,17 +140,24 @@ def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tupl
         return parts.t, (f"the times are those of columns {named}",)
     if clock is None:
         return np.arange(len(next(iter(columns.values()), ())), dtype=float), ()
+    if are_dates:
+        return columns[clock], ()
+    named = with_unit(clock, unit)
     of_day = times_of_day_from_digits(columns[clock])
-    if of_day is not None:
+    if of_day is not None and unit_of_clock(named) in ("", "s"):
         return of_day, (f"the times of column {clock} are read as hours, minutes and seconds",)
-    counted = unit_of_counted_times(clock, columns[clock])
+    counted = unit_of_counted_times(named, columns[clock])
     if counted:
         step = float(np.nanmedian(np.diff(columns[clock])))
         return times_in_seconds(clock, columns[clock], counted), (
             f"the times of column {clock} are taken as {counted}: they are whole numbers, "
             f"{step:g} from row to row",
         )
-    return times_in_seconds(clock, columns[clock]), ()
+    t = times_in_seconds(named, columns[clock])
+    word = unit_of_clock(named)
+    if word in LONG_UNITS and np.array_equal(t, columns[clock] * SECONDS[word], equal_nan=True):
+        return t, (f"the times of column {clock} are in {LONG_UNITS[word]}",)
+    return t, ()
 
 
 def _long_parquet(path: Path) -> Log | None:
