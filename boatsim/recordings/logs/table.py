@@ -33,7 +33,7 @@ from boatsim.recordings.importing.coordinates import (
     kind_of_place,
     places_of_hemispheres,
 )
-from boatsim.recordings.importing.dates import seconds_from_dates
+from boatsim.recordings.importing.dates import may_be_digits_of_date, seconds_from_dates
 from boatsim.recordings.importing.log import (
     MAX_SIGNALS,
     MAX_TEXT_BYTES,
@@ -478,7 +478,8 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
     empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
-        if _may_separate_thousands(column, separator):
+        has_dates = may_be_digits_of_date(next(filter(str.strip, column[:SAMPLE].to_pylist()), ""))
+        if has_dates or _may_separate_thousands(column, separator):
             return column_of_texts(name, column.to_pylist(), separator)
         return Cells(np.array(filled.cast(pa.float64()).to_numpy(), dtype=float))
     except pa.ArrowException:
