@@ -53,8 +53,8 @@ def with_unit(name: str, unit: str) -> str:
 
     Args:
         name: Name of the column.
-        unit: Unit of the row below the header or behind every number; one of another quantity, or
-            none, leaves the name as it is.
+        unit: Unit of the row below the header or behind every number; without one of a time the
+            name stays unchanged.
     """
     if unit_of_clock(name) or not unit_of_clock(f"t [{unit}]"):
         return name

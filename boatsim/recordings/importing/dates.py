@@ -41,7 +41,8 @@ NAMED_MONTH = re.compile(
     re.IGNORECASE,
 )
 MONTH_FIRST = re.compile(
-    rf"(?P<name>[^\W\d_]{{3,9}})\.?\s+(?P<day>\d{{1,2}}),?\s+(?P<year>\d{{4}})(?:[t_\s;,-]+{TIME})?",
+    rf"(?P<name>[^\W\d_]{{3,9}})\.?\s+(?P<day>\d{{1,2}}),?\s+(?P<year>\d{{4}})"
+    rf"(?:[t_\s;,-]+{TIME})?",
     re.IGNORECASE,
 )  # Apr 23, 2024 12:18:12
 YEAR_AT_END = re.compile(
@@ -116,8 +117,12 @@ def zone_name(cells: Sequence[str]) -> str:
     for cell in cells:
         if cell.strip():
             found = ZONE_NAME.search(_without_enclosure(cell.strip()))
-            names.add(found["zone"] if found else "")
-    return names.pop() if len(names) == 1 else ""
+            if not found:
+                return ""
+            names.add(found["zone"])
+    if len(names) != 1:
+        return ""
+    return str(names.pop())
 
 
 def may_be_digits_of_date(cell: str) -> bool:
@@ -230,7 +235,9 @@ def _dashed(texts: Sequence[str]) -> Callable[[str], float]:
     lengths = set(map(len, fractions))
     counted = 0.0
     if len(lengths) > 1:
-        counted = 1e-3 if max(lengths) <= len("999") else 1e-6
+        counted = 1e-6
+        if max(lengths) <= len("999"):
+            counted = 1e-3
 
     def seconds_from_date(text: str) -> float:
         found = DASHED.fullmatch(text)

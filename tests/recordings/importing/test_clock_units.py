@@ -1,5 +1,6 @@
-"""Units of the times of a table, by the name of their column or the row below it."""
+"""Units of the times of a table: by name, by the row below it, as counts of days; lost digits."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -61,3 +62,37 @@ def test_only_units_of_times_belong_to_a_clock():
     assert with_unit("time", "ms") == "time [ms]"
     assert with_unit("time_s", "ms") == "time_s"
     assert with_unit("time", "deg") == "time"
+
+
+EPOCH = datetime(2024, 4, 23, 12, 18, 12, tzinfo=UTC)
+
+
+@pytest.mark.parametrize(
+    ("day", "name"),  # of 2000-01-01 00:00 UTC
+    [(36526.0, ""), (730486.0, "MATLAB's datenum"), (2451544.5, "Julian dates")],
+)
+@pytest.mark.parametrize("column", ["time", "n"])
+def test_counts_of_days_are_seconds_since_1970(tmp_path, day, name, column):
+    since = (EPOCH - datetime(2000, 1, 1, tzinfo=UTC)).total_seconds() + T
+    log = read(table(tmp_path, column, [f"{day + s / 86400.0:.10f}" for s in since]))
+    found = log.signals["heading_deg"].t
+    assert found == pytest.approx(EPOCH.timestamp() + T, abs=1e-4)
+    assert any(f"are read as {name}" in remark for remark in log.remarks) == bool(name)
+
+
+def test_seconds_of_a_clock_that_runs_for_days_are_no_days(tmp_path):
+    begin = 739000.0
+    assert times(table(tmp_path, "time", [f"{begin + t:.1f}" for t in T])) == pytest.approx(
+        begin + T
+    )
+
+
+def test_times_with_too_few_digits_get_a_remark(tmp_path):
+    milliseconds = 1000.0 * (EPOCH.timestamp() + T)
+    log = read(table(tmp_path, "time", [f"{t:.9E}" for t in milliseconds]))
+    said = "of the rows have the time of the row before: if the times have too few digits"
+    assert said in "".join(log.remarks)
+    same = read(table(tmp_path, "time", [f"{t:.5E}" for t in milliseconds]))
+    assert "column time is 1.71387e+12 in all rows" in "".join(same.remarks)
+    full = read(table(tmp_path, "time", [f"{t:.0f}" for t in milliseconds]))
+    assert not full.remarks
