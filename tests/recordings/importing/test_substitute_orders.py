@@ -18,6 +18,7 @@ DRIVES = [
     VesselChannel("n_port_radps", -FULL, FULL, 0, LEVER, (COEFFICIENT, COEFFICIENT)),
     VesselChannel("n_starboard_radps", -FULL, FULL, 0, -LEVER, (COEFFICIENT, COEFFICIENT)),
 ]
+RPM = 60.0 / (2.0 * np.pi)  # [1/min] per rad/s
 MEAN = 60.0 + 15.0 * np.sin(0.11 * T)  # [rad/s]
 DIFFERENCE = 20.0 * np.sin(0.002 * T**2)
 PORT, STARBOARD = MEAN + DIFFERENCE, MEAN - DIFFERENCE
@@ -73,3 +74,71 @@ def test_loads_of_a_part_and_measured_ones_are_no_orders(force, moment):
     log = log_of(**{force: Signal(T, FORCE, "N"), moment: Signal(T, MOMENT, "Nm")})
     text, _ = columns_of(log)
     assert "sum = [" not in text
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [("stick_left [%]", "stick_right [%]"), ("Stick port (%)", "Stick stbd (%)")],
+)
+def test_two_sticks_are_the_orders_of_the_two_drives_where_a_log_has_no_others(left, right):
+    sticks = {left: Signal(T, PORT, "%"), right: Signal(T, STARBOARD, "%")}
+    log = log_of(**sticks)
+    text, columns = columns_of(log)
+    check_orders(log)  # full command is 100 rad/s, so that per cent are rad/s
+    assert "a stick is taken as the order of the drive" in text
+    assert not [name for name in columns if name.startswith("stick_")]
+    with_orders = log_of(
+        **sticks,
+        cmd_port_rpm=Signal(T, PORT * RPM),
+        cmd_stbd_rpm=Signal(T, STARBOARD * RPM),
+    )
+    _, columns = columns_of(with_orders)
+    assert columns["n_port_radps"] == "cmd_port_rpm * rpm"
+
+
+def test_the_axes_of_one_stick_are_no_orders_of_drives():
+    axes = {"stick_left_x": Signal(T, PORT / 100.0), "stick_right_x": Signal(T, STARBOARD / 100.0)}
+    _, columns = columns_of(log_of(**axes))
+    assert "n_port_radps" not in columns
+
+
+@pytest.mark.parametrize(
+    ("port", "starboard"),
+    [
+        ("rpm_feedback_port", "rpm_feedback_stbd"),
+        ("ESC1.RPM", "ESC2.RPM"),
+        ("ESC2.RPM", "ESC1.RPM"),  # the turning shows the side
+    ],
+)
+def test_reported_shaft_rates_take_the_place_of_orders_with_a_remark(port, starboard):
+    log = log_of(**{port: Signal(T, PORT * RPM), starboard: Signal(T, STARBOARD * RPM)})
+    text, columns = columns_of(log)
+    check_orders(log)
+    said = "CHECK: reported, not ordered: lags between order and report cannot be found"
+    assert text.count(said) == 2
+    assert not [name for name in columns if name.startswith("actual_")]
+
+
+def test_reports_next_to_orders_are_named_after_the_channel_of_the_vessel():
+    orders = {"cmd_port_rpm": PORT, "cmd_stbd_rpm": STARBOARD}
+    reports = {"actual_port_rpm": PORT, "actual_stbd_rpm": STARBOARD}
+    signals = {}
+    for name, values in {**orders, **reports}.items():
+        signals[name] = Signal(T, values * RPM)
+    text, columns = columns_of(log_of(**signals))
+    assert columns["n_port_radps"] == "cmd_port_rpm * rpm"
+    assert columns["actual_n_port_radps"] == "actual_port_rpm * rpm"
+    assert columns["actual_n_starboard_radps"] == "actual_stbd_rpm * rpm"
+    assert "not ordered" not in text and "actual_actual" not in text
+
+
+def test_the_report_of_one_drive_is_no_order_of_the_other():
+    signals = {
+        "cmd_port_rpm": Signal(T, PORT * RPM),
+        "rpm_feedback_port": Signal(T, PORT * RPM),
+        "rpm_feedback_stbd": Signal(T, STARBOARD * RPM),
+    }
+    _, columns = columns_of(log_of(**signals))
+    assert columns["n_port_radps"] == "cmd_port_rpm * rpm"
+    assert columns["n_starboard_radps"] == "rpm_feedback_stbd * rpm"
+    assert columns["actual_n_port_radps"] == "rpm_feedback_port * rpm"
