@@ -7,7 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.dates import month_number, seconds_from_dates
+from boatsim.recordings.importing.dates import (
+    may_be_digits_of_date,
+    month_number,
+    seconds_from_dates,
+    zone_name,
+)
 
 EMPTY_WORDS = ("", "nan", "null", "none", "na", "n/a", "-")
 # 1.2 or 1.02 became "1 February", shown as 01.feb, 1-Feb or 01/02; 1.68 became "January 1968"
@@ -54,6 +59,9 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         cells: Texts of the column (N,).
         separator: Separator of the table, with which a decimal comma can be told from a separator.
     """
+    dates = _dates_of_digits(cells)
+    if dates is not None:
+        return Cells(dates, are_dates=True)
     texts, remarks = cells, []
     marks = "," if separator == "," else ",."
     for mark in marks:
@@ -82,7 +90,7 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
     if numbers < MIN_NUMBERS * (numbers + len(words)):
         times = seconds_from_dates(cells)
         if times is not None:
-            return Cells(times, are_dates=True)
+            return Cells(times, are_dates=True, remarks=_remarks_on_zone(cells))
         with_unit = _numbers_with_unit(texts, words, separator)
         if with_unit is not None:
             return with_unit
@@ -92,6 +100,22 @@ def column_of_cells(cells: Sequence[str], separator: str) -> Cells:
         return Cells(found, word=word)
     restored = _restored(cells, found, words)
     return replace(restored, remarks=(*remarks, *restored.remarks))
+
+
+def _dates_of_digits(cells: Sequence[str]) -> Array | None:
+    """Times (N,) [s] of cells such as 20240423121812.30, None for others; a float is too coarse."""
+    first = next(filter(str.strip, cells), "")
+    if not may_be_digits_of_date(first):
+        return None
+    return seconds_from_dates(cells)
+
+
+def _remarks_on_zone(cells: Sequence[str]) -> tuple[tuple[str, int], ...]:
+    """The remark on the name of a zone, if dates have one."""
+    zone = zone_name(cells)
+    if not zone:
+        return ()
+    return ((f"the name of the time zone, {zone}, is ignored", 0),)
 
 
 def separates_thousands(cells: Sequence[str], mark: str) -> bool:

@@ -51,7 +51,7 @@ def channel_line(
         )
     scale = scale_of_signal(g, values, drive)
     if scale is None:
-        expression = _expression_with_unit(g, name)
+        expression = expression_with_unit(g, name)
         if drive and _is_raw_command(g, values, drive):
             expression = g.name
         if turned:
@@ -150,8 +150,13 @@ def _is_raw_command(
     return bool(drive.low <= values.min() and values.max() <= drive.high)
 
 
-def _expression_with_unit(g: Classification, name: str) -> str:
-    """An expression in the unit of the column."""
+def expression_with_unit(g: Classification, name: str) -> str:
+    """Return the expression of a signal in the unit of a column.
+
+    Args:
+        g: The signal.
+        name: Name of the column.
+    """
     if g.name == name or g.word == "rpm" and name.endswith("_rpm"):
         return g.name
     if g.word == "rpm" and name.endswith("_rps"):

@@ -34,6 +34,17 @@ def units_are_compatible(drive: VesselChannel, g: Classification) -> bool:
     return "" in kinds or kinds[0] == kinds[1]
 
 
+def are_of_one_kind(drive: VesselChannel, g: Classification) -> bool:
+    """Return whether channel and signal are both known to be angles, rates or forces.
+
+    Args:
+        drive: The channel.
+        g: The signal.
+    """
+    kind = _kind_of(unit_of(drive.name))
+    return bool(kind) and kind == _kind_of(unit_of_signal(g))
+
+
 def may_be_command_of(drive: VesselChannel, g: Classification) -> bool:
     """Return whether a signal may command a channel, by their units.
 

@@ -39,7 +39,7 @@ def match_by_names(
         group = [d for d in drives if d.name not in found and is_steering_channel(d) is steers]
         found |= _match_by_number(group, unassigned(moving, found))
     unnumbered = [d for d in drives if d.name not in found]
-    found |= _with_note(_match_by_name(unnumbered, unassigned(moving, found)), "")
+    found |= _with_note(match_by_similarity(unnumbered, unassigned(moving, found)), "")
     helms = [d for d in drives if d.name not in found and is_steering_channel(d)]
     if helms:
         named: list[Classification] = []
@@ -83,7 +83,7 @@ def _match_steering_channels(
     rudders = [g for g in measured if g.tokens & HELM and units_are_compatible(helms[0], g)]
     if len(rudders) == 1:
         return _assign_to_all(helms, rudders[0], why)
-    return _with_note(_match_by_name(helms, rudders), why)
+    return _with_note(match_by_similarity(helms, rudders), why)
 
 
 def _with_note(
@@ -134,10 +134,15 @@ def _match_by_number(
     return found
 
 
-def _match_by_name(
+def match_by_similarity(
     drives: Sequence[VesselChannel], moving: Sequence[Classification]
 ) -> dict[str, Classification]:
-    """The signal with the most similar name of each channel; no signal is used twice."""
+    """Return the signal with the most similar name of each channel; no signal is used twice.
+
+    Args:
+        drives: Channels of the vessel.
+        moving: Signals that are not constant.
+    """
     pairs = []
     for drive in drives:
         for i, g in enumerate(moving):

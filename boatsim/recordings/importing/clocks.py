@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.expression import UNITS
+from boatsim.recordings.importing.clock_units import SECONDS, unit_of_clock, without_unit
+from boatsim.recordings.importing.day_counts import day_count
 from boatsim.recordings.importing.foreign_words import plain_name, translate_words
 
 # Names of columns that are times; a unit may follow
@@ -16,16 +17,6 @@ CLOCK = re.compile(
     r"|t_?(vec|vector|out|axis|log|rx|recv|received|sent|unix|utc|gps|pc)"
     r"|time_?(s|ms|us|ns)?)$"
 )
-ENDING = re.compile(
-    r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|millis|micros|s|ms|us|µs|ns|usec|msec"
-    r"|nsec)[\])]*$"
-)
-UNIT_WORDS = {
-    **dict.fromkeys(("second", "seconds", "sec", "secs"), "s"),
-    **dict.fromkeys(("millisecond", "milliseconds", "millis", "msec"), "ms"),
-    **dict.fromkeys(("µs", "usec", "micros"), "us"),
-    "nsec": "ns",
-}
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
 EPOCH_UNITS = (1.0, 1e-3, 1e-6, 1e-9)  # [s] units in which times since 1970 are counted
 TIME_WORDS = {
@@ -39,11 +30,6 @@ NOT_NOW = set("previous prev last next cycle delta diff step dt start begin end 
 MIN_TIMES = 20  # fewer values do not show that a column increases as times do
 MIN_FORWARD = 0.5  # share of steps forward in a column of times; messages may share a time
 MAX_BACKWARD = 0.05  # share of steps back, where rows are out of order
-# Spreadsheets count days since 1899-12-30; these are the years 2000 to 2100
-SHEET_DAYS = (36526.0, 73051.0)
-SHEET_EPOCH = 25569.0  # [days] 1970-01-01
-# [days] A larger median step between rows, 43 s, is of no log; seconds have larger steps than this
-MAX_SHEET_STEP = 5e-4
 DAY, HOUR, MINUTE = 86400.0, 3600.0, 60.0  # [s]
 # Numbers hhmmss leap by 40 and a step from 59 s to the next minute
 MIN_MINUTE_LEAP = 40.0
@@ -77,8 +63,8 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
 
     It is the first column of a usual name whose values increase, or in rows out of order differ.
     Without one it is a column of dates, then one whose name contains a word for time, then one that
-    counts since 1970. Values of these may repeat but hardly ever decrease; the one with the most
-    different values is chosen.
+    counts since 1970 or in days. Values of these may repeat but hardly ever decrease; the one with
+    the most different values is chosen.
 
     Args:
         columns: Name -> values (N,).
@@ -88,7 +74,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
         The name; None if there is no such column.
     """
     for name, values in columns.items():
-        plain = re.sub(r"[\s.]+", "_", ENDING.sub("", name.lower())) or "t"
+        plain = re.sub(r"[\s.]+", "_", without_unit(name)) or "t"
         finite = values[np.isfinite(values)]
         if CLOCK.match(plain) and len(finite) > 1 and _may_be_times(finite):
             return name
@@ -96,7 +82,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
     for name, values in columns.items():
         if _hardly_decreases(values):
             increasing[name] = values
-    for is_likely in (dates.__contains__, is_called_a_time, lambda n: _is_epoch(increasing[n])):
+    for is_likely in (dates.__contains__, is_called_a_time, lambda n: _is_date(increasing[n])):
         names = list(filter(is_likely, increasing))
         if names:
             return max(names, key=lambda n: len(np.unique(increasing[n])))
@@ -127,6 +113,11 @@ def is_called_a_time(name: str) -> bool:
     """Return whether the name of a column has a word for the time of its row."""
     words = set(_words(name))
     return bool(words & TIME_WORDS) and not words & NOT_NOW
+
+
+def _is_date(values: Array) -> bool:
+    """Whether values (N,) are times since 1970, in any unit, or days since another epoch."""
+    return _is_epoch(values) or day_count(values[np.isfinite(values)]) is not None
 
 
 def _is_epoch(values: Array) -> bool:
@@ -297,15 +288,15 @@ def unit_of_counted_times(name: str, values: Array) -> str:
         values: Times (N,).
     """
     finite = values[np.isfinite(values)]
-    if len(finite) < MIN_TIMES or ENDING.search(name.lower()) or _is_epoch(finite):
+    if len(finite) < MIN_TIMES or unit_of_clock(name) or _is_epoch(finite):
         return ""
-    if (finite != np.round(finite)).any() or _are_sheet_days(finite):
+    if (finite != np.round(finite)).any() or day_count(finite) is not None:
         return ""
     step = float(np.median(np.diff(finite)))
     if not step > MAX_STEP:
         return ""
     for unit in ("ms", "us", "ns"):
-        if MIN_COUNTED_STEP < step * UNITS[unit] < MAX_STEP:
+        if MIN_COUNTED_STEP < step * SECONDS[unit] < MAX_STEP:
             return unit
     return ""
 
@@ -317,29 +308,22 @@ def times_in_seconds(name: str, values: Array, unit: str = "") -> Array:
         name: Name of the column, which gives the unit of times that are not since 1970; s by
             default.
         values: Times (N,); the size of times since 1970 shows their unit, and the size and steps
-            of a spreadsheet's days show these.
+            of days since an epoch show these.
         unit: Unit of the times; by default it is found.
     """
     if unit:
-        return values * UNITS[unit]
+        return values * SECONDS[unit]
     finite = values[np.isfinite(values)]
-    middle = 0.0
+    middle, step, stated = 0.0, 0.0, unit_of_clock(name)
     if len(finite):
         middle = float(np.median(finite))
+    if stated and len(finite) > 1:
+        step = float(np.median(np.abs(np.diff(finite))))
     for seconds in EPOCH_UNITS:
-        if YEAR_2000 < middle * seconds < YEAR_2100:
+        # 3e9 ns since the start are no date in s: the rows would be too far apart
+        if YEAR_2000 < middle * seconds < YEAR_2100 and step * seconds <= MAX_STEP:
             return values * seconds
-    if _are_sheet_days(finite):
-        return (values - SHEET_EPOCH) * DAY
-    word = "s"
-    if found := ENDING.search(name.lower()):
-        word = UNIT_WORDS.get(found[1], found[1])
-    return values * UNITS[word]
-
-
-def _are_sheet_days(t: Array) -> bool:
-    """Whether finite times (N,) are days as spreadsheets count them."""
-    if len(t) < 2 or not (SHEET_DAYS[0] < t.min() and t.max() < SHEET_DAYS[1]):
-        return False
-    step = float(np.median(np.abs(np.diff(t))))
-    return 0.0 < step < MAX_SHEET_STEP
+    days = day_count(finite)
+    if days is not None:
+        return days.seconds(values)
+    return values * SECONDS[stated or "s"]

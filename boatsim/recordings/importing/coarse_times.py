@@ -58,6 +58,22 @@ def spread_coarse_times(t: Array, columns: Sequence[Array]) -> SpreadTimes | Non
     return SpreadTimes(t + step * number / np.repeat(each, counts), step, usual)
 
 
+def share_of_equal_times(t: Array, columns: Sequence[Array]) -> float:
+    """Return the share of rows with the time of the row before, if the times lack digits.
+
+    Args:
+        t: Times (N,) [s] as logged.
+        columns: Values (N,) of the other columns of the table.
+
+    Returns:
+        The share; 0 if rows of one time are copies, or of several sensors.
+    """
+    together = np.diff(t) == 0.0
+    if not together.any() or not _is_one_stream(t, columns):
+        return 0.0
+    return float(np.mean(together))
+
+
 def _is_one_stream(t: Array, columns: Sequence[Array]) -> bool:
     """Whether the rows of one stamp differ from each other and have the same filled cells."""
     together = np.diff(t) == 0.0

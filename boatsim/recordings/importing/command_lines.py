@@ -7,7 +7,7 @@ from boatsim.recordings.importing.channel_line import channel_line
 from boatsim.recordings.importing.channel_units import is_steering_channel
 from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.channels_by_motion import Unnamed, match_unnamed
-from boatsim.recordings.importing.channels_by_name import match_by_names
+from boatsim.recordings.importing.channels_by_name import match_by_names, unassigned
 from boatsim.recordings.importing.command_remarks import (
     exchanged_side_lines,
     unsigned_order_lines,
@@ -23,6 +23,7 @@ from boatsim.recordings.importing.revolution_unit import RevolutionUnit
 from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import is_constant, unique_names
 from boatsim.recordings.importing.signal_words import HELM, side_from_tokens, tokenize_name
+from boatsim.recordings.importing.substitute_orders import reports_as_orders, sticks_of_sides
 from boatsim.recordings.importing.turning import Turning
 
 
@@ -76,6 +77,8 @@ def command_lines(
     if not chosen and not allocated:
         allocated = allocation_lines(drives, best)
         taken += [best[kind][0] for kind in EFFORTS if allocated and kind in best]
+    if not allocated and not questions:
+        chosen = _with_substitutes(chosen, drives, best, moving, turning, unnamed)
     for drive in drives:
         if drive.name in allocated:
             lines.append(allocated[drive.name])
@@ -102,6 +105,24 @@ def command_lines(
         if g not in taken:
             lines.append(unused_line(g, drives))
     return lines, taken
+
+
+def _with_substitutes(
+    chosen: Mapping[str, tuple[Classification, str]],
+    drives: Sequence[VesselChannel],
+    best: Mapping[str, Sequence[Classification]],
+    moving: Sequence[Classification],
+    turning: Turning,
+    unnamed: Unnamed,
+) -> dict[str, tuple[Classification, str]]:
+    """Signals of channels, with sticks or reports of the drives where the log has no orders."""
+    found = dict(chosen)
+    missing = [drive for drive in drives if drive.name not in found]
+    if not missing or unassigned(moving, found):
+        return found
+    found |= sticks_of_sides(missing, best)
+    missing = [drive for drive in missing if drive.name not in found]
+    return found | reports_as_orders(missing, best, turning, unnamed)
 
 
 def _natural_sort_key(name: str) -> list[tuple[int, str]]:

@@ -48,6 +48,14 @@ EFFORT_AXES = {
     **dict.fromkeys(("n", "r", "yaw", "psi"), "effort_n"),
 }
 MOMENT_WORDS = {"moment", "torque"}
+# Kind of a force or moment without an axis -> its unit, and words one of which its name has
+EFFORTS_BY_UNIT = {
+    "effort_x": ("N", {"force", "thrust"}),
+    "effort_n": ("Nm", MOMENT_WORDS),
+}
+NEWTON_METRES = {"N m", "N*m", "N·m", "N.m", "Nm"}
+# Words of the force or moment of a part of the vessel
+OF_A_PART = set("shaft motor propeller prop engine rudder x y z roll pitch sway surge".split())
 
 
 def drive_kind(signal: Signal, tokens: frozenset[str]) -> str | None:
@@ -134,6 +142,42 @@ def effort_of_words(words: Sequence[str], tokens: frozenset[str]) -> str | None:
     if kind == "effort_x" and tokens & MOMENT_WORDS:
         return None
     return kind
+
+
+def effort_by_unit(signal: Signal, tokens: frozenset[str], log: Log) -> str | None:
+    """Return the kind of a force or moment without an axis in its name; None for another signal.
+
+    The words and the units show it: the log has one order in N and one in Nm.
+
+    Args:
+        signal: The signal.
+        tokens: Words of its name.
+        log: The log.
+
+    Returns:
+        "effort_x" or "effort_n".
+    """
+    kind = _effort_with_unit(signal, tokens)
+    if not kind:
+        return None
+    found = []
+    for name, other in log.signals.items():
+        found.append(_effort_with_unit(other, frozenset(tokenize_name(name))))
+    are_a_pair = all(found.count(one) == 1 for one in EFFORTS_BY_UNIT)
+    return kind if are_a_pair else None
+
+
+def _effort_with_unit(signal: Signal, tokens: frozenset[str]) -> str:
+    """The kind of an order by its unit and a word for a force or moment; "" for another signal."""
+    unit = signal.unit.strip()
+    if unit in NEWTON_METRES:
+        unit = "Nm"
+    if not tokens & ORDERED or tokens & (SENSED | OF_A_PART) or side_from_tokens(tokens):
+        return ""
+    for kind, (own, words) in EFFORTS_BY_UNIT.items():
+        if unit == own and tokens & words:
+            return kind
+    return ""
 
 
 def _is_share_of_a_side(signal: Signal, tokens: frozenset[str]) -> bool:

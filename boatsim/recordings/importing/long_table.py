@@ -138,6 +138,8 @@ def _times_of_rows(
     if clock is None:
         return "", np.empty(0)
     whole = values[clock]
+    if clock in dates:
+        return called[clock], whole
     if times_of_day_from_digits(usual[clock]) is None:
         counted = unit_of_counted_times(clock, usual[clock])
         return called[clock], times_in_seconds(clock, whole, counted)

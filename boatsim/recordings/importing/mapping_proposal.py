@@ -78,12 +78,13 @@ def propose_map(
         body.append(f"{toml_key(column)} = {toml_value(expression)}  # by the vessel's file")
     open_drives = [d for d in drives if d.name not in known]
     driven: list[Classification] = []
+    unit = RevolutionUnit(track, approach_speed)
     if drives and not open_drives:
         commands = ["# all are above"]
     else:
         enu = log.frame == "ENU"
         seen = {**best, **stated_motion}
-        turning, unit = Turning(seen, enu), RevolutionUnit(track, approach_speed)
+        turning = Turning(seen, enu)
         motion = motion_of_log(seen, turning, track or track_of(seen), enu)
         unnamed = Unnamed(numbered, motion)
         commands, driven = command_lines(best, open_drives, turning, unit, unnamed)
@@ -104,7 +105,7 @@ def propose_map(
         "",
         "# commands: what was sent to the drives",
         *(commands or ["# none was found"]),
-        *further_lines(best),
+        *further_lines(best, drives, driven, unit),
     ]
     return "\n".join(lines) + "\n"
 

@@ -30,6 +30,7 @@ FROM_EAST = {"enu"}  # x east, y north, angles counterclockwise from east
 CLOCKWISE = {"ned", "cw", "clockwise", "compass"}
 FRAMES = FROM_EAST | {"ned"}
 DISPLACEMENTS = {"surge": "x_m", "sway": "y_m", "heave": "z_m"}  # of a body on a rig
+VELOCITIES = SPEEDS | {"m/s", "mps", "kn", "km/h"}
 LENGTHS = {"m", "mm", "cm"}
 BODY = {"odom", "odometry", "body", "base"}  # frames with x forward
 # Words of three numbered signals, such as orientation_1 to _3: about x, y and z
@@ -54,7 +55,10 @@ def column_of_motion(last: list[str], tokens: frozenset[str], log: Log) -> str |
     if found := _angular_rate(end, tokens):
         return found
     if end in POSE_WORDS:
-        return POSE_WORDS[end]
+        column = POSE_WORDS[end]
+        if column in ("x_m", "y_m") and tokens & VELOCITIES:
+            return None  # a velocity to the north, of the vessel or of a current
+        return column
     if (
         end in ("x", "y")
         and not tokens & MOTIONS

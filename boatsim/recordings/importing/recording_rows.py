@@ -12,6 +12,7 @@ from boatsim.recordings.importing.conversion_remarks import remark_rates
 from boatsim.recordings.importing.conversion_state import HELD, ConversionState, signal_of
 from boatsim.recordings.importing.resample import mean_held_values, row_times
 from boatsim.recordings.importing.several_logs import file_begin_line
+from boatsim.recordings.importing.time_zones import shifts_of_zones
 from boatsim.recordings.raw_table import file_error, select_rows
 from boatsim.recordings.table import FEWEST_ROWS, allowed_empty_rows
 
@@ -139,7 +140,10 @@ def complete_rows(
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
     kept &= _rows_of_measurements(signals)
-    for _ in range(MAX_ROUNDS):  # the removal of rows may change which columns are slow
+    for _ in range(MAX_ROUNDS):
+        if kept.sum() < FEWEST_ROWS:
+            break
+        # the removal of rows may change which columns are slow
         allowed = allowed_empty_rows(select_rows(signals, kept))
         missing = np.zeros(int(kept.sum()), dtype=np.bool_)
         for name, values in signals.items():
@@ -155,7 +159,8 @@ def complete_rows(
     if kept.sum() < FEWEST_ROWS:
         raise file_error(
             work.log.path,
-            f"{int(kept.sum())} rows are complete; at least {FEWEST_ROWS} are needed",
+            f"{int(kept.sum())} rows are complete; at least {FEWEST_ROWS} are needed"
+            f"{_spans_hint(work)}",
         )
     for name, values in signals.items():
         if name in (*POSE, *RATES) and np.isfinite(values[kept]).sum() < FEWEST_ROWS:
@@ -202,6 +207,8 @@ def _spans_hint(work: ConversionState) -> str:
         return ""
     spans = [f"{name} {span.in_words()}" for name, span in work.spans.items()]
     line = file_begin_line(list(work.spans)[-1])
+    for name, shift in shifts_of_zones(work.spans).items():
+        line = file_begin_line(name, shift.seconds, shift.in_words())
     return f" ({'; '.join(spans)}); if a clock is wrong, write into {work.file}: {line}"
 
 

@@ -216,6 +216,17 @@ def files_with_unrelated_clocks(
     return found
 
 
+def files_without_common_time(spans: Mapping[str, Span]) -> list[str]:
+    """Return the files whose times are UTC like those of the first file, but never at its times."""
+    first, *others = spans
+    found = []
+    for name in others:
+        is_apart = spans[name].end < spans[first].begin or spans[name].begin > spans[first].end
+        if is_apart and spans[first].is_utc and spans[name].is_utc:
+            found.append(name)
+    return found
+
+
 def align_clocks(log: Log, begins: Mapping[str, float], file: str) -> Log:
     """Return a log of several files with all times on the clock of the first file.
 
@@ -246,16 +257,18 @@ def align_clocks(log: Log, begins: Mapping[str, float], file: str) -> Log:
     return _shifted(log, lambda signal: signal.t + shifts.get(signal.source, 0.0))
 
 
-def file_begin_line(name: str, seconds: float | None = None) -> str:
+def file_begin_line(
+    name: str, seconds: float | None = None, why: str = "if both have one clock"
+) -> str:
     """Return the line of a map that states when a file begins.
 
     Args:
         name: Name of the file.
-        seconds: Begin after that of the first file if both have one clock [s]; None leaves a place
-            for the number.
+        seconds: Begin after that of the first file [s]; None leaves a place for the number.
+        why: Condition or reason of the number.
     """
     if seconds is not None:
-        return f'[begins] / "{name}" = {seconds:g} (if both have one clock)'
+        return f'[begins] / "{name}" = {seconds:g} ({why})'
     return f'[begins] / "{name}" = SECONDS (after the first file begins)'
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.drive_names import (
     drive_kind,
+    effort_by_unit,
     effort_of_words,
     is_direction_order,
     names_channel,
@@ -146,7 +147,7 @@ def classify_signal(
             return _degrees(
                 name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES)
             )
-    effort = effort_of_words(words, tokens)
+    effort = effort_by_unit(signal, tokens, log) or effort_of_words(words, tokens)
     if effort and not _is_load(tokens, body):
         return Classification(name, signal, effort, "", moves + rate, "", tokens)
     kind = drive_kind(signal, tokens)

@@ -11,9 +11,11 @@ from boatsim.recordings.importing.several_logs import (
     begins_by_shared_clock,
     file_spans,
     files_with_unrelated_clocks,
+    files_without_common_time,
 )
 from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import sampling_rate
+from boatsim.recordings.importing.time_zones import shifts_of_zones
 
 MAX_ROW_RATE = 50.0  # [Hz] a higher rate of rows is not needed for the motion of boats
 
@@ -49,7 +51,7 @@ def time_lines(log: Log) -> list[str]:
 
 
 def begin_lines(log: Log, best: Mapping[str, Sequence[Classification]]) -> list[str]:
-    """Return lines that state when the further files of a run begin, if their times are no UTC.
+    """Return lines that state when the further files of a run begin, if they share no clock.
 
     Args:
         log: The log.
@@ -60,23 +62,39 @@ def begin_lines(log: Log, best: Mapping[str, Sequence[Classification]]) -> list[
         return []
     first = next(iter(spans))
     unrelated = files_with_unrelated_clocks(spans, {})
-    if not unrelated:
+    apart = files_without_common_time(spans)
+    if not unrelated and not apart:
         return []
     shared = begins_by_shared_clock(spans)
     by_motion = begins_by_motion(best, {name: span.begin for name, span in spans.items()})
+    zones = shifts_of_zones(spans, {name: begin.seconds for name, begin in by_motion.items()})
     lines = [f"# begin of each file in s after that of {first}; UTC needs no line"]
-    for name in unrelated:
+    for name in spans:
+        if name not in (*unrelated, *apart):
+            continue
         seconds, why = 0.0, "CHECK: no common clock, 0 is a guess"
+        key = f"begins.{toml_key(name)}"
         if name in shared:
             seconds, why = (
                 shared[name],
                 f"by its times, which are of one clock with those of {first}",
             )
+        elif name in zones:
+            seconds, why = zones[name].seconds, f"CHECK: {zones[name].in_words()}"
+            if name in by_motion:
+                why += (
+                    "; the turning that both files show agrees (correlation "
+                    f"{by_motion[name].correlation:.2f})"
+                )
         elif name in by_motion:
             seconds = by_motion[name].seconds
             why = (
                 "CHECK: by the turning that both files show (correlation "
                 f"{by_motion[name].correlation:.2f})"
             )
-        lines.append(f"begins.{toml_key(name)} = {seconds!r}  # {why}")
+        elif name in apart:
+            spanned = f"{spans[name].in_words()}, of {first} {spans[first].in_words()}"
+            lines.append(f"# {key} = SECONDS  # CHECK: its times are {spanned}: none in common")
+            continue
+        lines.append(f"{key} = {seconds!r}  # {why}")
     return lines

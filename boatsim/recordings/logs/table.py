@@ -18,21 +18,24 @@ from boatsim.recordings.importing.cells import (
     Cells,
     is_number,
 )
+from boatsim.recordings.importing.clock_units import SECONDS, unit_of_clock, with_unit
 from boatsim.recordings.importing.clocks import (
     calendar_times,
+    is_called_a_time,
     seconds_and_fraction,
     time_column,
     times_in_seconds,
     times_of_day_from_digits,
     unit_of_counted_times,
 )
-from boatsim.recordings.importing.coarse_times import spread_coarse_times
+from boatsim.recordings.importing.coarse_times import share_of_equal_times, spread_coarse_times
 from boatsim.recordings.importing.coordinates import (
     degrees_of_degrees_and_minutes,
     kind_of_place,
     places_of_hemispheres,
 )
-from boatsim.recordings.importing.dates import seconds_from_dates
+from boatsim.recordings.importing.dates import may_be_digits_of_date, seconds_from_dates
+from boatsim.recordings.importing.day_counts import day_count
 from boatsim.recordings.importing.log import (
     MAX_SIGNALS,
     MAX_TEXT_BYTES,
@@ -65,6 +68,9 @@ if TYPE_CHECKING:
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
+LONG_UNITS = {"min": "minutes", "h": "hours", "d": "days"}  # of a clock, which get a remark
+# Share of rows with the time of the row before; a few rows may be simultaneous
+MIN_EQUAL_TIMES = 0.3
 MAX_HEAD = 1_000_000  # [bytes] that are read to find names and units
 # Share of the rows that may have another number of cells than the header, because a write was cut
 MAX_CUT_ROWS = 0.05
@@ -96,9 +102,10 @@ def _log(
     dates: Collection[str] = (),
 ) -> Log:
     clock = time_column(columns, dates)
-    t, how = _times(columns, clock)
+    t, how = _times(columns, clock, units.get(clock or "", ""), clock in dates)
     has_times = clock is not None or bool(how)
     if not has_times:
+        how += _constant_clock_remark(columns)
         how += ("no column holds times: rows are counted; the map can name it with `time`",)
     elif clock in dates or (clock and clock.startswith("column_")):
         how = (f"the times are those of column {clock}", *how)
@@ -106,6 +113,12 @@ def _log(
     if has_times:
         others = [values for name, values in columns.items() if name != clock]
         spread = spread_coarse_times(t, others)
+        share = share_of_equal_times(t, others)
+        if spread is None and share >= MIN_EQUAL_TIMES:
+            how += (
+                f"{100.0 * share:.3g} % of the rows have the time of the row before: if the "
+                "times have too few digits, write them with more",
+            )
     if spread is not None:
         t = spread.t
         of_column = f" of column {clock}" if clock is not None else ""
@@ -123,8 +136,26 @@ def _log(
     return Log(path, signals, remarks=(*remarks, *(f"{path}: {text}" for text in how)))
 
 
-def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tuple[str, ...]]:
-    """Times (N,) [s] of the rows, and remarks on the columns from which they follow."""
+def _constant_clock_remark(columns: Mapping[str, Array]) -> tuple[str, ...]:
+    """The remark on a column of times that has one value in all rows, such as 1.71387E+12."""
+    for name, values in columns.items():
+        finite = values[np.isfinite(values)]
+        if is_called_a_time(name) and len(finite) > 1 and not np.ptp(finite) > 0.0:
+            value = f"{finite[0]:.10g}"
+            return (
+                f"column {name} is {value} in all rows: were its times written with too few "
+                "digits?",
+            )
+    return ()
+
+
+def _times(
+    columns: Mapping[str, Array], clock: str | None, unit: str, are_dates: bool
+) -> tuple[Array, tuple[str, ...]]:
+    """Times (N,) [s] of the rows, and remarks on the columns from which they follow.
+
+    `unit` is the one that the table has for its clock outside of the name; dates are in s already.
+    """
     parts = calendar_times(columns)
     if parts is None or clock not in (None, *parts.names):
         parts = seconds_and_fraction(columns, clock)
@@ -133,17 +164,27 @@ def _times(columns: Mapping[str, Array], clock: str | None) -> tuple[Array, tupl
         return parts.t, (f"the times are those of columns {named}",)
     if clock is None:
         return np.arange(len(next(iter(columns.values()), ())), dtype=float), ()
+    if are_dates:
+        return columns[clock], ()
+    named = with_unit(clock, unit)
     of_day = times_of_day_from_digits(columns[clock])
-    if of_day is not None:
+    if of_day is not None and unit_of_clock(named) in ("", "s"):
         return of_day, (f"the times of column {clock} are read as hours, minutes and seconds",)
-    counted = unit_of_counted_times(clock, columns[clock])
+    counted = unit_of_counted_times(named, columns[clock])
     if counted:
         step = float(np.nanmedian(np.diff(columns[clock])))
         return times_in_seconds(clock, columns[clock], counted), (
             f"the times of column {clock} are taken as {counted}: they are whole numbers, "
             f"{step:g} from row to row",
         )
-    return times_in_seconds(clock, columns[clock]), ()
+    t = times_in_seconds(named, columns[clock])
+    days = day_count(columns[clock][np.isfinite(columns[clock])])
+    if days is not None and days.name:
+        return t, (f"the times of column {clock} are read as {days.name}",)
+    word = unit_of_clock(named)
+    if word in LONG_UNITS and np.array_equal(t, columns[clock] * SECONDS[word], equal_nan=True):
+        return t, (f"the times of column {clock} are in {LONG_UNITS[word]}",)
+    return t, ()
 
 
 def _long_parquet(path: Path) -> Log | None:
@@ -464,7 +505,8 @@ def _numbers_of_texts(column: "ChunkedArray", name: str, separator: str) -> Cell
     empty = compute.is_in(compute.utf8_lower(texts), pa.array(EMPTY_WORDS))
     try:
         filled = compute.if_else(empty, pa.scalar(None, pa.string()), texts)
-        if _may_separate_thousands(column, separator):
+        has_dates = may_be_digits_of_date(next(filter(str.strip, column[:SAMPLE].to_pylist()), ""))
+        if has_dates or _may_separate_thousands(column, separator):
             return column_of_texts(name, column.to_pylist(), separator)
         values = np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:

@@ -5,8 +5,9 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
+from boatsim.recordings.importing.cells import column_of_cells
 from boatsim.recordings.importing.clocks import time_column, times_in_seconds
-from boatsim.recordings.importing.dates import month_number, seconds_from_dates
+from boatsim.recordings.importing.dates import month_number, seconds_from_dates, zone_name
 
 BEGIN = datetime(2024, 4, 23, 12, 18, 12, 250_000, UTC)
 STEPS = [timedelta(milliseconds=100 * i) for i in range(30)]
@@ -18,6 +19,18 @@ FORMS = {
     "british": "%d/%m/%Y %H:%M:%S.%f",
     "american": "%m/%d/%Y %I:%M:%S.%f %p",
     "named month": "%d %b %Y %H:%M:%S.%f",
+    "month first": "%b %d, %Y %I:%M:%S.%f %p",
+    "C library": "%a %b %d %H:%M:%S.%f %Y",
+    "day of the week": "%A, %d %B %Y %H:%M:%S.%f",
+    "day of the year": "%Y-%jT%H:%M:%S.%f",
+    "day of the year and colons": "%Y:%j:%H:%M:%S.%f",
+    "dashes": "%Y-%m-%d-%H-%M-%S-%f",
+    "digits": "%Y%m%d%H%M%S.%f",
+    "digits only": "%Y%m%d%H%M%S%f",
+    "brackets": "[%Y-%m-%d %H:%M:%S.%f]",
+    "quotes": "'%Y-%m-%d %H:%M:%S.%f'",
+    "name of a zone": "%Y-%m-%d %H:%M:%S.%f CEST",
+    "C library with a zone": "%a %b %d %H:%M:%S CEST %Y",
 }
 
 
@@ -25,7 +38,44 @@ FORMS = {
 def test_every_form_of_a_date_gives_its_seconds_since_1970(form):
     cells = [(BEGIN + step).strftime(form) for step in STEPS]
     expected = [(BEGIN + step).timestamp() for step in STEPS]
+    if "%f" not in form:
+        expected = np.floor(expected)
     assert seconds_from_dates(cells) == pytest.approx(expected, abs=1e-5)
+
+
+def test_a_fraction_behind_a_dash_may_be_whole_milliseconds():
+    t = seconds_from_dates([f"2024-04-23-12-18-12-{ms}" for ms in (8, 58, 108, 158)])
+    assert np.diff(t) == pytest.approx(0.05, abs=1e-6)
+    tenths = seconds_from_dates([f"2024-04-23-12-18-12-{digit}" for digit in (3, 4, 5)])
+    assert np.diff(tenths) == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_duration_counts_its_days():
+    t = seconds_from_dates(["0 days 23:59:59.5", "1 days 00:00:00.5", "1 day, 0:00:01.5"])
+    assert t == pytest.approx([86399.5, 86400.5, 86401.5])
+
+
+def test_the_day_of_a_year_begins_with_one():
+    [first] = seconds_from_dates(["2024-001T00:00:00"])
+    assert first == datetime(2024, 1, 1, tzinfo=UTC).timestamp()
+    assert seconds_from_dates(["2024-367T00:00:00"]) is None
+
+
+def test_names_of_zones_are_ignored_only_where_all_are_alike():
+    there = ["2024-04-23 12:18:12 CEST", "2024-04-23 12:18:13 CEST"]
+    assert zone_name(there) == "CEST"
+    assert zone_name(["2024-04-23 12:18:12 GMT"]) == ""
+    assert seconds_from_dates([there[0], "2024-04-23 12:18:13 EST"]) is None
+    assert column_of_cells(there, ";").remarks == (
+        ("the name of the time zone, CEST, is ignored", 0),
+    )
+
+
+def test_digits_of_a_date_do_not_leap_at_the_minute():
+    cells = [(BEGIN + 20 * step).strftime("%Y%m%d%H%M%S.%f")[:-4] for step in STEPS]
+    found = column_of_cells(cells, ",")
+    assert found.are_dates
+    assert np.diff(found.values) == pytest.approx(2.0)
 
 
 def test_a_zone_is_taken_into_account():

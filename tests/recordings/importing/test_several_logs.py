@@ -14,7 +14,8 @@ from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.mapping import parse_map
 from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.recording_notes import recording_notes_text
-from boatsim.recordings.importing.several_logs import open_logs
+from boatsim.recordings.importing.several_logs import Span, open_logs
+from boatsim.recordings.importing.time_zones import ZoneShift, shifts_of_zones
 from boatsim.recordings.table import read
 
 CHANNELS = {"thrust_motor_N": (-50.0, 100.0)}
@@ -84,6 +85,76 @@ def test_files_of_different_hours_name_their_spans_and_the_line(tmp_path):
     with pytest.raises(BadInput) as caught:
         convert_log(log, parse_map({"columns": COLUMNS}, "map.toml"), "map.toml", CHANNELS)
     assert "16:06:52" in str(caught.value) and '[begins] / "engine.csv"' in str(caught.value)
+
+
+def zoned_files(folder: Path, ahead: float, start: float = EPOCH) -> list[Path]:
+    """A compass, and an engine with a gyroscope that begins 8 s later, its clock ahead [s]."""
+    run = turning_boat()
+    late = run["t"] >= 8.0
+    rate = np.degrees(np.gradient(run["psi"], run["t"]))
+    engine = {"thrust": run["thrust"][late], "gyro_z": rate[late]}
+    degrees = np.degrees(run["psi"])
+    return [
+        write(folder / "compass.csv", "time", run["t"], start, heading=degrees),
+        write(folder / "engine.csv", "time", run["t"][late], start + ahead + 8.0, **engine),
+    ]
+
+
+ZONED = {
+    "psi_rad": "heading * deg",
+    "r_radps": "gyro_z * degps",
+    "thrust_motor_N": "thrust",
+}
+
+
+@pytest.mark.filterwarnings("error")
+def test_two_files_with_motion_in_other_zones_name_their_spans_and_the_line(tmp_path):
+    log = open_logs(zoned_files(tmp_path, 7200.0))
+    with pytest.raises(BadInput) as caught:
+        convert_log(log, parse_map({"columns": ZONED}, "map.toml"), "map.toml", CHANNELS)
+    message = str(caught.value)
+    assert "compass.csv 2025-06-15 15:06:40" in message
+    assert "engine.csv 2025-06-15 17:06:48" in message
+    assert '[begins] / "engine.csv" = 8 (its clock is 2 h ahead, as that of another' in message
+
+
+@pytest.mark.parametrize("hours", [2.0, -5.5, 0.5, 14.0])
+@pytest.mark.parametrize("start", [EPOCH, 44000.0])
+def test_files_of_other_zones_begin_where_whole_or_half_hours_put_them(tmp_path, hours, start):
+    log = open_logs(zoned_files(tmp_path, 3600.0 * hours, start))
+    text = propose_map(log)
+    way = "ahead" if hours > 0.0 else "behind"
+    said = f"CHECK: its clock is {abs(hours):g} h {way}, as that of another time zone; the turning"
+    assert said in text
+    table = tomllib.loads(text)
+    assert table["begins"] == {"engine.csv": 8.0}
+    run = convert_log(
+        log,
+        parse_map({"begins": table["begins"], "columns": ZONED}, "map.toml"),
+        "map.toml",
+        CHANNELS,
+    )
+    known = turning_boat()
+    psi = np.interp(run.t + 8.0, known["t"], known["psi"])
+    assert run["psi_rad"] == pytest.approx(psi, abs=1e-3)
+    held = np.interp(run.t + 8.0, known["t"], known["thrust"])
+    assert run["thrust_motor_N"] == pytest.approx(held, abs=0.3)
+
+
+def test_a_difference_of_no_half_hours_is_no_zone():
+    first = Span(EPOCH, EPOCH + 120.0)
+    assert shifts_of_zones({"a": first, "b": Span(EPOCH + 600.0, EPOCH + 720.0)}) == {}
+    assert shifts_of_zones({"a": first, "b": Span(EPOCH + 60.0, EPOCH + 3720.0)}) == {}
+    long = Span(EPOCH, EPOCH + 7200.0)  # the shift with the longest overlap
+    ahead = {"a": long, "b": Span(EPOCH + 10805.0, EPOCH + 18005.0)}
+    assert shifts_of_zones(ahead)["b"] == ZoneShift(3.0, 5.0)
+    by_motion = {"b": 1804.0}
+    assert shifts_of_zones(ahead, by_motion)["b"] == ZoneShift(2.5, 1805.0)
+
+
+def test_files_without_any_common_time_get_a_comment_that_says_so(tmp_path):
+    text = propose_map(open_logs(two_files(tmp_path, (EPOCH, EPOCH + 700.0))), "v")
+    assert '# begins."engine.csv" = SECONDS  # CHECK: its times are 2025-06-15 15:18:20' in text
 
 
 def test_a_proposal_for_two_files_has_the_signals_of_both_and_the_begin(tmp_path):

@@ -33,6 +33,8 @@ rate_of_turn -99 99 deg/min r_radps degpmin
 yaw_rad_s -0.3 0.3 - r_radps -
 XKF1.PN 0 30 m x_m -
 y_east 0 30 - y_m -
+current_speed_north -1 1 m/s nothing -
+vel_east_mps -1 1 m/s nothing -
 pos_x 0 30 - x_m -
 vehicle_local_position.x 0 30 m x_m -
 vehicle_local_position.vx 0 3 m/s nothing -
