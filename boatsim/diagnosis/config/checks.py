@@ -652,6 +652,13 @@ class ChecksConfig:
     rates_min_rows: int = setting(
         30, "count", "Rows needed to compare a rate with the positions.", low=3
     )
+    rates_max_gap: float = setting(
+        2.5,
+        "1",
+        "Time between two samples of a sensor in its usual intervals up to which values between "
+        "them are interpolated: one lost sample, with jitter of its time.",
+        low=1.0,
+    )
     rates_min_correlation: float = setting(
         0.9, "1", "Correlation from which two rates are those of the same motion.", high=1.0
     )
