@@ -646,6 +646,23 @@ class ChecksConfig:
         2.0, "1", "Largest Froude number of a boat; beyond it boats plane or fly on foils."
     )
     position_impossible_froude: float = setting(10.0, "1", "Froude number that no boat reaches.")
+    position_turn_blocks: int = setting(
+        50,
+        "count",
+        "Equal parts of a log over which turns are counted, so that noise of the heading averages "
+        "out.",
+        low=2,
+    )
+    position_min_turn: float = setting(
+        3.0, "rad", "Sum of turns, about half a circle, from which their length is compared."
+    )
+    position_turn_lengths: tuple[float, ...] = setting(
+        (1.5, 50.0),
+        "length",
+        "Usual track per radian of turn over a log: boats turn within one to four lengths and go "
+        "straight in between. The range is below 100, so that cm and m exclude each other.",
+        0.0,
+    )
     rates_window: float = setting(
         1.0, "s", "Time over which positions are differenced on a hull of 1.2 m.", low=0.01
     )
