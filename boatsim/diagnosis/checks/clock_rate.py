@@ -6,7 +6,7 @@ through the water changes one of them. If both deviate from the times of the row
 the times of the rows are wrong: rows that were resampled by time stamps that came late or early, or
 a logger whose clock runs fast or slow.
 
-Each file has a clock of its own. A wander is sought about the mean rate of each file, and one
+Each file has its own clock. A wander is sought about the mean rate of each file, and one
 constant rate of all files is compared with one rate per file.
 """
 

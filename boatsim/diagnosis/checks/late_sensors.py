@@ -4,7 +4,7 @@ The delay is removed from the recordings, and the vessel model with refitted coe
 explain them far better than as recorded, where it may also have effects that look alike: lags of
 the drives, other forces in sway, an antenna that is not at the mass centre.
 
-Each file has a clock of its own. One delay of all files is compared with one delay per file, and
+Each file has its own clock. One delay of all files is compared with one delay per file, and
 each further delay must add evidence.
 """
 
