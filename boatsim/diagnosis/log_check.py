@@ -87,7 +87,8 @@ def check_files(
             velocity_is_late = any(f.name == "velocity_late" for f in findings)
             if not has_result(compared) and not velocity_is_late:
                 compared += check_late_sensors(usable, question.problem)
-            findings += [replace(f, run=str(usable[0].path)) for f in compared]
+            for finding in compared:
+                findings.append(replace(finding, run=finding.run or str(usable[0].path)))
         except BadInput as error:
             refused.append(error)
     entries: dict[Path, list[LogEntry]] = {path: [] for path in runs}

@@ -5,12 +5,16 @@ turn took. These are two independent clocks. One sensor with a wrong gain, a cur
 through the water changes one of them. If both deviate from the times of the rows in the same way,
 the times of the rows are wrong: rows that were resampled by time stamps that came late or early, or
 a logger whose clock runs fast or slow.
+
+Each file has its own clock. A wander is sought about the mean rate of each file, and one
+constant rate of all files is compared with one rate per file.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import Change, Finding
 from boatsim.diagnosis.config import ChecksConfig
@@ -24,6 +28,7 @@ from boatsim.recordings.notes import CLOCK_BY_MOTION
 from boatsim.recordings.table import Recording
 
 SPEEDS = ("u_mps", "v_mps")
+MIN_RATE_SD = 1e-6  # against division by 0 in logs without noise
 
 
 @dataclass(frozen=True)
@@ -34,17 +39,28 @@ class _RateComparison:
         track: Clock rates (K,) by positions and velocities.
         turning: Clock rates (K,) by heading and yaw rate.
         weight: Square of the change of heading (K,), the precision of `turning`.
+        file: Number of the file (K,).
     """
 
     track: Array
     turning: Array
     weight: Array
+    file: NDArray[np.int64]
+
+    def selected(self, used: NDArray[np.bool_]) -> "_RateComparison":
+        """The comparison over some of the stretches (K,)."""
+        return _RateComparison(
+            self.track[used], self.turning[used], self.weight[used], self.file[used]
+        )
 
     @property
     def correlation(self) -> float:
-        """Weighted correlation of both rates."""
-        a = self.track - _mean(self.track, self.weight)
-        b = self.turning - _mean(self.turning, self.weight)
+        """Weighted correlation of both rates about their means in each file."""
+        a, b = self.track.copy(), self.turning.copy()
+        for file in np.unique(self.file).tolist():
+            own = self.file == file
+            a[own] -= _mean(a[own], self.weight[own])
+            b[own] -= _mean(b[own], self.weight[own])
         size = float(np.sqrt(_mean(a * a, self.weight) * _mean(b * b, self.weight)))
         if size > 0.0:
             return float(_mean(a * b, self.weight)) / size
@@ -54,7 +70,8 @@ class _RateComparison:
     def significance(self) -> float:
         """Number of standard deviations by which the correlation differs from none."""
         c = self.correlation
-        return c * float(np.sqrt((self.effective_sample_size - 2.0) / max(1.0 - c * c, 1e-9)))
+        freedom = max(self.effective_sample_size - 1.0 - len(np.unique(self.file)), 0.0)
+        return c * float(np.sqrt(freedom / max(1.0 - c * c, 1e-9)))
 
     @property
     def effective_sample_size(self) -> float:
@@ -84,7 +101,8 @@ def _mean(values: Array, weight: Array) -> float:
 def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> list[Finding]:
     """Find a clock that runs fast, slowly or unevenly, from what all sensors see of the motion.
 
-    All recordings are examined together, because one instrument and one logger made them.
+    All recordings are examined together, because one instrument and one logger made them. Files
+    whose constant rates differ are judged one by one.
 
     Args:
         recordings: Prepared recordings of one vessel, or parts of them.
@@ -95,12 +113,13 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
         the columns of positions, heading, velocities and yaw rate.
     """
     examined = [r for r in recordings if not r.notes.clock]
-    long = []
+    long, files = [], []
     for recording in examined:
         run = motion_stretches(recording.t, recording.signals, config.clock_stretch_rows)
         if run:
             long.append(run)
-    compared = _compare(long, config)
+            files.append(recording.origin)
+    compared = _compare(long, files, config)
     if compared is None:
         return []
     gain, gain_sd = compared.velocity_gain()
@@ -110,27 +129,67 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     if agree and compared.significance > config.clock_min_sds:
         found = _wander(examined, gain if wrong_gain else 1.0, compared, config)
     elif not wrong_gain:
-        found = _constant_rate(examined, compared, _track_rate(long), config)
+        different = _different_rates(compared, config)
+        for file in different:
+            ours = [recording for recording in examined if recording.origin == files[file]]
+            runs = [run for run, name in zip(long, files, strict=True) if name == files[file]]
+            own = compared.selected(compared.file == file)
+            for finding in _constant_rate(ours, own, _track_rate(runs), config):
+                found.append(replace(finding, of_run_only=True))
+        if not different:
+            found = _constant_rate(examined, compared, _track_rate(long), config)
     if found and wrong_gain:
         found += [_velocity_gain(recording, gain, gain_sd, config) for recording in examined]
     return found
 
 
-def _compare(runs: Sequence[Stretches], config: ChecksConfig) -> _RateComparison | None:
+def _different_rates(compared: _RateComparison, config: ChecksConfig) -> list[int]:
+    """Files that have constant clock rates of their own; empty if one rate explains all files.
+
+    The log likelihood of one rate per file must exceed that of a common rate, for each further
+    rate, by as much as a deviation of `clock_min_sds` standard deviations.
+    """
+    files, middles, precisions = list[int](), list[float](), list[float]()
+    for file in np.unique(compared.file).tolist():
+        own = compared.selected(compared.file == file)
+        if len(own.track) < config.clock_min_stretches:
+            continue
+        middle, sd = own.mean_clock_rate()
+        files.append(file)
+        middles.append(middle)
+        precisions.append(1.0 / max(sd, MIN_RATE_SD) ** 2)
+    if len(files) < 2:
+        return []
+    rates, precision = np.array(middles), np.array(precisions)
+    off = rates - _mean(rates, precision)
+    gain = 0.5 * float((precision * off**2).sum())
+    penalty = 0.5 * config.clock_min_sds**2 * (len(files) - 1)
+    if gain > penalty and float(np.ptp(rates)) > config.clock_min_rate:
+        return files
+    return []
+
+
+def _compare(
+    runs: Sequence[Stretches], files: Sequence[str], config: ChecksConfig
+) -> _RateComparison | None:
     """Both clock rates over turning stretches; None if these are too few."""
     track, turning, weight = list[Array](), list[Array](), list[Array]()
-    for run in runs:
+    file = list[NDArray[np.int64]]()
+    for run, name in zip(runs, files, strict=True):
         travelled = (run.travelled**2).sum(axis=0)
         used = (np.abs(run.turned) > config.clock_min_turn) & (travelled > 0.0)
         along = (run.travelled * run.moved).sum(axis=0)
         track.append(along[used] / travelled[used])
         turning.append(run.swung[used] / run.turned[used])
         weight.append(run.turned[used] ** 2)
+        file.append(np.full(int(used.sum()), files.index(name)))
     if sum(map(len, track)) < config.clock_min_stretches:
         return None
-    found = _RateComparison(*map(np.concatenate, (track, turning, weight)))
-    usual = np.median(found.weight)
-    found = _RateComparison(found.track, found.turning, np.minimum(found.weight, usual))
+    weights = np.concatenate(weight)
+    weights = np.minimum(weights, np.median(weights))
+    found = _RateComparison(
+        np.concatenate(track), np.concatenate(turning), weights, np.concatenate(file)
+    )
     if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
         return _without_contradictions(found, config)
     return found
@@ -141,7 +200,7 @@ def _without_contradictions(found: _RateComparison, config: ChecksConfig) -> _Ra
     same = found.turning > 0.0
     if same.sum() < max(config.clock_min_stretches, config.clock_min_agreement * len(same)):
         return None
-    return _RateComparison(found.track[same], found.turning[same], found.weight[same])
+    return found.selected(same)
 
 
 def _track_rate(runs: Sequence[Stretches]) -> float:

@@ -1,7 +1,10 @@
 """A finding about a log: its name, the evidence, and the change of columns that corrects it."""
 
+import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -15,6 +18,7 @@ from boatsim.recordings.table import Recording
 Kind = Literal["fault", "mended", "limit", "drive", "unchecked"]
 LOG_NOT_BOAT = "probably your log, not your boat"
 PLANAR_POSE = ("x_m", "y_m", "psi_rad")
+BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # a key of TOML that needs no quotes
 MAX_LISTED = 5  # places that the text of a finding lists
 # units that are written into recording.toml by name instead of as a number
 UNITS_BY_NAME = ("deg", "percent", "ms", "us", "ns", "rpm", "rev")
@@ -57,6 +61,8 @@ class Finding:
         remedy: Advice in words, if no line of recording.toml corrects it.
         words: Description in a clause, if the name does not describe it.
         run: File of the recording; for several recordings that of the first.
+        of_run_only: Whether the correction is for this recording alone, not for others that share
+            its recording.toml.
     """
 
     name: str
@@ -71,6 +77,7 @@ class Finding:
     remedy: str = ""
     words: str = ""
     run: str = ""
+    of_run_only: bool = False
 
     @property
     def description(self) -> str:
@@ -252,7 +259,24 @@ def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) ->
         lines.append(f"use = [{begin:.9g}, {end:.9g}]")
     if finding.clock:
         lines.append(f'clock = "{finding.clock}"')
-    return lines + correction_lines(finding.changes, sources)
+    lines += correction_lines(finding.changes, sources)
+    if finding.of_run_only:
+        return _lines_of_run(lines, Path(finding.run).stem)
+    return lines
+
+
+def _lines_of_run(lines: Sequence[str], name: str) -> list[str]:
+    """Lines of recording.toml in the tables `[runs.NAME]` of one recording."""
+    if not BARE_KEY.fullmatch(name):
+        name = json.dumps(name, ensure_ascii=False)
+    found = []
+    if lines and not lines[0].startswith("["):
+        found.append(f"[runs.{name}]")
+    for line in lines:
+        if line.startswith("["):
+            line = f"[runs.{name}.{line[1:]}"
+        found.append(line)
+    return found
 
 
 def correction_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:

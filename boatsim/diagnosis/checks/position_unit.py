@@ -1,4 +1,9 @@
-"""Check for latitude and longitude in columns for metres, and for other units of length."""
+"""Check for latitude and longitude in columns for metres, and for other units of length.
+
+An impossible speed alone does not tell a wrong unit of the positions from a wrong unit of the time.
+A correction needs a second sign that does not depend on the time (the length of the turns), or that
+depends on it alone (the recorded speed).
+"""
 
 import numpy as np
 
@@ -12,6 +17,11 @@ from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.frames import curvature_radii
 from boatsim.recordings.table import Recording
 
+TIME_REMEDY = 'correct the times; if they are in minutes: t_s = "t_s * min" in [columns]'
+UNIT_REMEDY = (
+    'compare with the duration of the trial, then write x_m = "x_m * cm", y_m = "y_m * cm" or '
+    't_s = "t_s * min" (or the unit of the log) in [columns] of recording.toml'
+)
 INTEGER_DEGREES = 1e-7  # [deg] unit of positions that GNSS receivers write as integers
 
 
@@ -29,7 +39,8 @@ def check_position_unit(
         config: Thresholds of the quality checks.
 
     Returns:
-        At most one finding, "latitude_as_metres" or "position_unit".
+        At most one finding, "latitude_as_metres", "position_unit" or "time_unit". A unit that only
+        an impossible speed contradicts has no correction.
     """
     if not {"x_m", "y_m"} <= recording.signals.keys():
         return []
@@ -40,7 +51,9 @@ def check_position_unit(
     y = recording["y_m"][known]
     if len(t) < config.position_min_rows or np.ptp(t) <= 0.0:
         return []
-    return _check_degrees(t, x, y, vessel, config) or _check_scale(t, x, y, vessel, config)
+    return _check_degrees(t, x, y, vessel, config) or _check_scale(
+        recording, t, x, y, vessel, config
+    )
 
 
 def _check_degrees(
@@ -99,20 +112,102 @@ def _degrees_to_metres(name: str, metres: float, scale: float, origin: float) ->
 
 
 def _check_scale(
-    t: Array, x: Array, y: Array, vessel: Vessel, config: ChecksConfig
+    recording: Recording, t: Array, x: Array, y: Array, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
     froude = _froude_number(t, x, y, vessel, config)
     if not froude > config.position_impossible_froude:
         return []
+    speed = froude * np.sqrt(GRAVITY * vessel.length)
+    too_fast = f"x_m, y_m move at {speed:.3g} m/s, too fast for a hull of {vessel.length:g} m. "
+    second_signs = _turn_sign(recording, vessel, config)
+    second_signs += _recorded_speed_sign(recording, speed, config)
+    in_metres = [sign for factor, sign in second_signs if factor == 1.0]
+    for unit in ("cm", "mm"):
+        factor = UNITS[unit]
+        if not config.position_min_froude < froude * factor < 1.0:
+            continue
+        evidence = f"{too_fast}In {unit} they move at {speed * factor:.3g} m/s"
+        agreeing = [sign for other, sign in second_signs if other == factor]
+        if agreeing and not in_metres:
+            evidence += f". {agreeing[0]}, too"
+            changes = scaling_corrections(("x_m", "y_m"), factor)
+            return [Finding("position_unit", evidence, changes=changes)]
+    if in_metres:
+        evidence = f"{too_fast}{in_metres[0]}, so that the times are wrong"
+        return [Finding("time_unit", evidence, remedy=TIME_REMEDY)]
+    return _undecided_unit(froude, speed, too_fast, config)
+
+
+def _undecided_unit(
+    froude: float, speed: float, too_fast: str, config: ChecksConfig
+) -> list[Finding]:
+    """The finding of an impossible speed [m/s] without a second sign, which has no correction."""
+    possible = []
     for unit in ("cm", "mm"):
         if config.position_min_froude < froude * UNITS[unit] < 1.0:
-            speed = froude * np.sqrt(GRAVITY * vessel.length)
-            evidence = (
-                f"x_m, y_m move at {speed:.3g} m/s, too fast for a hull of {vessel.length:g} m. "
-                f"In {unit} they move at {speed * UNITS[unit]:.3g} m/s"
+            possible.append(f"the positions are in {unit} ({speed * UNITS[unit]:.3g} m/s)")
+    if config.position_min_froude < froude / UNITS["min"] < 1.0:
+        possible.append(f"the times are in minutes ({speed / UNITS['min']:.3g} m/s)")
+    if not possible:
+        return []
+    possible.append("the times are wrong otherwise")
+    evidence = f"{too_fast}Either {', or '.join(possible)}. The log does not show which"
+    return [Finding("position_unit", evidence, remedy=UNIT_REMEDY)]
+
+
+def _turn_sign(
+    recording: Recording, vessel: Vessel, config: ChecksConfig
+) -> list[tuple[float, str]]:
+    """Factors of the positions by which the turns have a usual length, each with its words.
+
+    The track per turned angle is a length in which the times have no part.
+    """
+    if not {"x_m", "y_m", "psi_rad"} <= recording.signals.keys():
+        return []
+    pose = np.array([recording[name] for name in ("x_m", "y_m", "psi_rad")])
+    pose = pose[:, np.isfinite(pose).all(axis=0)]
+    blocks = min(config.position_turn_blocks, pose.shape[1] - 1)
+    if blocks < 2:
+        return []
+    pose[2] = np.unwrap(pose[2])
+    edges = np.linspace(0, pose.shape[1] - 1, blocks + 1).astype(int)
+    dx, dy, turned = np.diff(pose[:, edges], axis=1)
+    total = float(np.abs(turned).sum())
+    if total < config.position_min_turn:
+        return []
+    lengths = float(np.hypot(dx, dy).sum()) / total / vessel.length
+    found = []
+    for unit in ("m", "cm", "mm"):
+        least, most = config.position_turn_lengths
+        if least < lengths * UNITS[unit] < most:
+            words = (
+                f"In {unit} the track is {lengths * UNITS[unit]:.3g} lengths of the hull for each "
+                "radian of turn, which is usual"
             )
-            changes = scaling_corrections(("x_m", "y_m"), UNITS[unit])
-            return [Finding("position_unit", evidence, changes=changes)]
+            found.append((UNITS[unit], words))
+    return found
+
+
+def _recorded_speed_sign(
+    recording: Recording, speed: float, config: ChecksConfig
+) -> list[tuple[float, str]]:
+    """The factor of the positions by which the track is as fast as recorded, with its words.
+
+    The times have no part in a recorded speed. Without a factor another column is at fault.
+    """
+    if "u_mps" not in recording.signals:
+        return []
+    across = np.zeros(len(recording))
+    if "v_mps" in recording.signals:
+        across = np.nan_to_num(recording["v_mps"])
+    recorded = np.hypot(recording["u_mps"], across)
+    if not np.isfinite(recorded).any():
+        return []
+    usual = float(np.nanmedian(recorded))
+    for unit in ("cm", "mm"):
+        most = config.rates_unit_tolerance * usual
+        if usual / config.rates_unit_tolerance < speed * UNITS[unit] < most:
+            return [(UNITS[unit], f"In {unit} this is the recorded speed of {usual:.3g} m/s")]
     return []
 
 

@@ -1,9 +1,14 @@
 """Check for recorded velocities that contradict the recorded positions.
 
-Such a velocity has another sign or unit, a delay, or belongs to another point of the hull.
+Such a velocity has another sign or unit, a delay, or belongs to another point of the hull. Sensors
+may have rates of their own: each rate is compared with the poses at times between neighbouring
+samples of both, and never across a gap of a sensor.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_corrections
 from boatsim.diagnosis.config import ChecksConfig
@@ -15,6 +20,8 @@ from boatsim.recordings.table import Recording
 
 RATES = ("u_mps", "v_mps", "r_radps")
 SPEED_UNITS = ("kn", "kmh", "cmps")
+# Equal steps per row, at most: memory is bounded for rows in bursts
+MAX_ROWS_RATIO = 4
 
 
 def check_recorded_rates(
@@ -32,59 +39,132 @@ def check_recorded_rates(
     Returns:
         Findings "velocity_sign", "velocity_unit", "velocity_late" and "velocity_elsewhere".
     """
-    for name in PLANAR_POSE:
-        if name not in recording.signals or not np.isfinite(recording[name]).all():
-            return []
-    half = _half_window(recording, vessel, config)
-    too_short = len(recording) < 4 * half + config.rates_min_rows
-    if too_short or not set(RATES) & recording.signals.keys():
-        return []
-    differenced = _rates_of_poses(recording, half)
     found = []
-    for name, rate in differenced.items():
-        if name in recording.signals and np.isfinite(recording[name]).all():
-            recorded = _moving_average(recording[name], half)[half : len(recording) - half]
-            step = float(np.median(np.diff(recording.t)))
-            yaw_rate = differenced["r_radps"]
-            found += _compare(name, recorded, rate, yaw_rate, step, vessel, config)
+    for name in RATES:
+        compared = _sampled_comparison(recording, name, vessel, config)
+        if compared is not None:
+            found += _compare(compared, vessel, config)
     return found
 
 
-def _half_window(recording: Recording, vessel: Vessel, config: ChecksConfig) -> int:
-    """Rows on either side over which positions are differenced."""
-    step = float(np.median(np.diff(recording.t)))
-    return max(1, round(0.5 * config.rates_window * froude_time_scale(vessel) / step))
+@dataclass(frozen=True)
+class _Comparison:
+    """A recorded rate and the rate of the poses at equally spaced times.
+
+    Attributes:
+        name: Column of the rate.
+        recorded: The recorded rate (N,), averaged; nan where it was not measured.
+        rate: The rate of the poses (N,); nan where they were not measured.
+        yaw_rate: The yaw rate of the poses (N,) [rad/s], likewise.
+        step: Time between values [s].
+        interval: Median time between samples of the slowest compared column [s].
+    """
+
+    name: str
+    recorded: Array
+    rate: Array
+    yaw_rate: Array
+    step: float
+    interval: float
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Whether both rates are known, (N,)."""
+        return np.isfinite(self.recorded) & np.isfinite(self.rate)
 
 
-def _rates_of_poses(recording: Recording, k: int) -> dict[str, Array]:
-    """Rates u, v, r (N - 2 k,) by central differences over k rows on either side."""
-    rows = np.arange(k, len(recording) - k)
-    span = recording.t[rows + k] - recording.t[rows - k]
-    dx, dy, dpsi = ((recording[n][rows + k] - recording[n][rows - k]) / span for n in PLANAR_POSE)
-    psi = _moving_average(recording["psi_rad"], k)[rows]
-    c = np.cos(psi)
-    s = np.sin(psi)
-    return {"u_mps": c * dx + s * dy, "v_mps": c * dy - s * dx, "r_radps": dpsi}
+def _sampled_comparison(
+    recording: Recording, name: str, vessel: Vessel, config: ChecksConfig
+) -> _Comparison | None:
+    """The comparison of a recorded rate; None if a column is missing or has too few samples."""
+    poses: tuple[str, ...] = PLANAR_POSE
+    if name == "r_radps":
+        poses = ("psi_rad",)
+    intervals = []
+    for column in (name, *poses):
+        if column not in recording.signals:
+            return None
+        sampled = recording.t[np.isfinite(recording[column])]
+        if len(sampled) < config.rates_min_rows:
+            return None
+        intervals.append(float(np.median(np.diff(sampled))))
+    t = _equal_steps(recording.t)
+    if not len(t):
+        return None
+    step = float(t[1] - t[0])
+    interval = max(*intervals, step)
+    window = 0.5 * config.rates_window * froude_time_scale(vessel)
+    half = max(1, round(max(window, interval) / step))
+    least = max(config.rates_min_rows, round(config.rates_min_rows * interval / step))
+    if len(t) < 4 * half + config.rates_min_rows:
+        return None
+    columns = {}
+    for column in (name, *poses):
+        columns[column] = _at_times(t, recording.t, recording[column], config)
+    differenced = _rates_of_poses(t, columns, half)
+    recorded = _moving_average(columns[name], half)[half : len(t) - half]
+    found = _Comparison(name, recorded, differenced[name], differenced["r_radps"], step, interval)
+    if found.known.sum() < least:
+        return None
+    return found
+
+
+def _equal_steps(t: Array) -> Array:
+    """Times from the first to the last row at the median interval of the rows; empty if none."""
+    step = float(np.median(np.diff(t)))
+    if not step > 0.0:
+        return np.zeros(0)
+    step = max(step, float(np.ptp(t)) / (MAX_ROWS_RATIO * len(t)))
+    return np.asarray(t[0] + step * np.arange(round(float(np.ptp(t)) / step) + 1))
+
+
+def _at_times(t: Array, rows: Array, values: Array, config: ChecksConfig) -> Array:
+    """Values (N,) between neighbouring samples of a column at times t; nan in its gaps."""
+    sampled = np.isfinite(values)
+    own, measured = rows[sampled], values[sampled]
+    after = np.searchsorted(own, t).clip(1, len(own) - 1)
+    longest = config.rates_max_gap * float(np.median(np.diff(own)))
+    tolerance = 1e-6 * longest
+    within = (t >= own[0] - tolerance) & (t <= own[-1] + tolerance)
+    within &= own[after] - own[after - 1] <= longest
+    return np.where(within, np.interp(t, own, measured), np.nan)
+
+
+def _rates_of_poses(t: Array, columns: dict[str, Array], k: int) -> dict[str, Array]:
+    """Rates u, v, r (N - 2 k,) by central differences over k steps on either side."""
+    rows = np.arange(k, len(t) - k)
+    span = t[rows + k] - t[rows - k]
+    moved = {}
+    for name in PLANAR_POSE:
+        if name in columns:
+            moved[name] = (columns[name][rows + k] - columns[name][rows - k]) / span
+    rates = {"r_radps": moved["psi_rad"]}
+    if "x_m" in moved and "y_m" in moved:
+        psi = _moving_average(columns["psi_rad"], k)[rows]
+        c = np.cos(psi)
+        s = np.sin(psi)
+        rates["u_mps"] = c * moved["x_m"] + s * moved["y_m"]
+        rates["v_mps"] = c * moved["y_m"] - s * moved["x_m"]
+    return rates
 
 
 def _moving_average(values: Array, k: int) -> Array:
-    """Mean (N,) over k rows on either side; the first and last k values are unchanged."""
-    total = np.concatenate(([0.0], np.cumsum(values)))
+    """Mean (N,) over k values on either side, nan where one is missing; both ends are unchanged."""
+    missing = ~np.isfinite(values)
+    total = np.concatenate(([0.0], np.cumsum(np.where(missing, 0.0, values))))
+    absent = np.concatenate(([0], np.cumsum(missing)))
     mean = values.copy()
-    mean[k:-k] = (total[2 * k + 1 :] - total[: -2 * k - 1])[: len(values) - 2 * k] / (2 * k + 1)
+    width = 2 * k + 1
+    inside = (total[width:] - total[:-width]) / width
+    mean[k:-k] = np.where(absent[width:] > absent[:-width], np.nan, inside)
     return mean
 
 
-def _compare(
-    name: str,
-    recorded: Array,
-    rate: Array,
-    yaw_rate: Array,
-    step: float,
-    vessel: Vessel,
-    config: ChecksConfig,
-) -> list[Finding]:
-    if len(rate) < config.rates_min_rows or not recorded.std() > 0.0 or not rate.std() > 0.0:
+def _compare(compared: _Comparison, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    name = compared.name
+    recorded = compared.recorded[compared.known]
+    rate = compared.rate[compared.known]
+    if not recorded.std() > 0.0 or not rate.std() > 0.0:
         return []
     correlation = float(np.corrcoef(recorded, rate)[0, 1])
     ratio = float(np.sqrt((rate @ rate) / (recorded @ recorded)))
@@ -104,10 +184,11 @@ def _compare(
         if found:
             return found
     if same_size and correlation > config.rates_min_delay_correlation:
-        found = _check_delay(name, recorded, rate, step, vessel, config)
+        found = _check_delay(compared, vessel, config)
         if found:
             return found
     if name == "v_mps":
+        yaw_rate = compared.yaw_rate[compared.known]
         return _check_lever(name, recorded, rate, yaw_rate, vessel, config)
     return []
 
@@ -127,21 +208,29 @@ def _check_unit(name: str, ratio: float, config: ChecksConfig) -> list[Finding]:
     return []
 
 
-def _check_delay(
-    name: str, recorded: Array, rate: Array, step: float, vessel: Vessel, config: ChecksConfig
-) -> list[Finding]:
+def _check_delay(compared: _Comparison, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    name, step, rate = compared.name, compared.step, compared.rate
+    recorded = compared.recorded
     most = round(config.rates_max_delay * froude_time_scale(vessel) / step)
     shortest = round(config.rates_min_delay * froude_time_scale(vessel) / step)
-    least = max(config.rates_min_delay_rows, shortest)
-    if most <= least or len(rate) < config.rates_min_durations * most:
+    rows = round(config.rates_min_delay_rows * compared.interval / step)
+    least = max(rows, shortest)
+    if most <= least or compared.known.sum() < config.rates_min_durations * most:
         return []
+    lags = range(-most, most + 1)
+    known = np.isfinite(rate[most:-most])
+    for lag in lags:
+        known &= np.isfinite(recorded[most + lag : len(recorded) - most + lag])
+    if known.sum() < config.rates_min_rows * compared.interval / step:
+        return []
+    true = rate[most:-most][known]
     residuals = {}
-    for lag in range(-most, most + 1):
-        shifted = recorded[most + lag : len(recorded) - most + lag]
-        residuals[lag] = float(np.mean((shifted - rate[most:-most]) ** 2))
+    for lag in lags:
+        shifted = recorded[most + lag : len(recorded) - most + lag][known]
+        residuals[lag] = float(np.mean((shifted - true) ** 2))
     best = min(residuals, key=lambda lag: residuals[lag])
     clear = residuals[best] <= config.rates_max_delay_residual * residuals[0]
-    large = residuals[0] > config.rates_min_difference * float(np.mean(rate**2))
+    large = residuals[0] > config.rates_min_difference * float(np.mean(rate[compared.known] ** 2))
     if abs(best) < least or abs(best) == most or not clear or not large:
         return []
     removed = 100.0 * (1.0 - residuals[best] / residuals[0])

@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from boatsim.diagnosis.candidates import program_with_candidates
-from boatsim.diagnosis.checks.finding import Change, apply_corrections_to_all
+from boatsim.diagnosis.checks.finding import Change, apply_corrections
 from boatsim.diagnosis.checks.initial_actuator_state import infer_initial_actuator_state
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.fit import converge, unfitted_hypothesis
@@ -37,7 +37,7 @@ class FaultComparison:
     def problem_with_changes(
         self, changes: Sequence[Change], program: Program | None = None
     ) -> Problem:
-        """Return the problem of the recordings with changes of columns.
+        """Return the problem of the recordings with the same changes of columns in each.
 
         Args:
             changes: The changes.
@@ -46,12 +46,26 @@ class FaultComparison:
         Raises:
             BadInput: A changed recording cannot be mapped to the vessel.
         """
+        return self.problem_with_own_changes([changes] * len(self.recordings), program)
+
+    def problem_with_own_changes(
+        self, changes: Sequence[Sequence[Change]], program: Program | None = None
+    ) -> Problem:
+        """Return the problem of the recordings with changes of columns of their own.
+
+        Args:
+            changes: The changes of each recording.
+            program: Program with further effects; None: that of the vessel as specified.
+
+        Raises:
+            BadInput: A changed recording cannot be mapped to the vessel.
+        """
         first = self.problem
         used = program or first.program
         levels = prior_noise_levels(used.vessel, self.recordings, first.config)
-        changed = apply_corrections_to_all(self.recordings, changes)
         mapped = []
-        for before, after in zip(self.recordings, changed, strict=True):
+        for before, own in zip(self.recordings, changes, strict=True):
+            after = apply_corrections(before, own)
             part = after.between(before.t[0] + 1e-6, before.t[-1] - self.lost)
             one = map_recording(part, used, config=first.config)
             mapped.append(infer_initial_actuator_state(one, levels, first.config.checks))

@@ -646,11 +646,35 @@ class ChecksConfig:
         2.0, "1", "Largest Froude number of a boat; beyond it boats plane or fly on foils."
     )
     position_impossible_froude: float = setting(10.0, "1", "Froude number that no boat reaches.")
+    position_turn_blocks: int = setting(
+        50,
+        "count",
+        "Equal parts of a log over which turns are counted, so that noise of the heading averages "
+        "out.",
+        low=2,
+    )
+    position_min_turn: float = setting(
+        3.0, "rad", "Sum of turns, about half a circle, from which their length is compared."
+    )
+    position_turn_lengths: tuple[float, ...] = setting(
+        (1.5, 50.0),
+        "length",
+        "Usual track per radian of turn over a log: boats turn within one to four lengths and go "
+        "straight in between. The range is below 100, so that cm and m exclude each other.",
+        0.0,
+    )
     rates_window: float = setting(
         1.0, "s", "Time over which positions are differenced on a hull of 1.2 m.", low=0.01
     )
     rates_min_rows: int = setting(
         30, "count", "Rows needed to compare a rate with the positions.", low=3
+    )
+    rates_max_gap: float = setting(
+        2.5,
+        "1",
+        "Time between two samples of a sensor in its usual intervals up to which values between "
+        "them are interpolated: one lost sample, with jitter of its time.",
+        low=1.0,
     )
     rates_min_correlation: float = setting(
         0.9, "1", "Correlation from which two rates are those of the same motion.", high=1.0

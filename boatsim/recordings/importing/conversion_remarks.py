@@ -27,7 +27,7 @@ def remark_disorder(
             columns.
     """
     for (late, doubled, first), names in disorder.items():
-        where = f"first {first - work.begin:.3f} s after the log begins"
+        where = work.first_of(np.array([first]))
         if late:
             work.remark(
                 f"{', '.join(names)}: {late} samples are logged after a later one, {where}; "

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from boatsim.errors import BadInput, nearest_hint
+from boatsim.physics.base import Array
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.mapping import Map
@@ -53,6 +54,14 @@ class ConversionState:
     def remark(self, text: str) -> None:
         """Add a remark on the log."""
         self.remarks.append(f"{self.log.path}: {text}")
+
+    def first_of(self, t: Array) -> str:
+        """Return when the first of some samples was logged, in words.
+
+        Args:
+            t: Times (N,) of the samples [s], at least one.
+        """
+        return f"first {float(t.min()) - self.begin:.3f} s after the log begins"
 
 
 def signal_of(work: ConversionState, key: str, text: str) -> tuple[Signal, Expression]:

@@ -41,7 +41,10 @@ def add_position(work: ConversionState, position: Position) -> None:
     if nowhere.any():
         count = int(nowhere.sum())
         fixes = "1 fix" if count == 1 else f"{count} fixes"
-        work.remark(f"omitted {fixes} at latitude and longitude 0, before satellites were found")
+        work.remark(
+            f"omitted {fixes} at latitude and longitude 0, before satellites were found, "
+            f"{work.first_of(t[nowhere])}"
+        )
     there &= ~nowhere
     inside = there & rows_in_use(work, t)
     if not inside.any():

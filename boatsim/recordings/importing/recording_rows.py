@@ -153,7 +153,8 @@ def complete_rows(
         if not len(lost):
             break
         work.remark(
-            f"{len(lost)} rows in which a pose or rate is missing that the others have are left out"
+            f"{len(lost)} rows in which a pose or rate is missing that the others have are left "
+            f"out, {work.first_of(rows[lost])}"
         )
         kept[lost] = False
     if kept.sum() < FEWEST_ROWS:

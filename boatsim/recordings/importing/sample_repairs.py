@@ -101,9 +101,10 @@ def drop_unfixed(work: ConversionState) -> None:
     usual = float(np.percentile(np.abs(np.diff(track[first:])), USUAL_STEP_PERCENTILE))
     if abs(track[first]) < MIN_LEAP * usual:
         return
+    after = x.given.t[first] - work.begin
     work.remark(
         f"x_m, y_m: omitted {first} positions of 0, 0 before the first fix, which is "
-        f"{abs(track[first]):.3g} m away"
+        f"{abs(track[first]):.3g} m away, {after:.3f} s after the log begins"
     )
     for name, column in (("x_m", x), ("y_m", y)):
         kept = Samples(column.given.t[first:], column.given.values[first:])
@@ -141,8 +142,8 @@ def drop_repeats(work: ConversionState) -> None:
         if repeated.any():
             work.remark(
                 f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat "
-                "the one before and are "
-                "not measurements; they are left empty"
+                "the one before and are not measurements, "
+                f"{work.first_of(there[0].given.t[repeated])}; they are left empty"
             )
             for name, c in zip(names, there, strict=True):
                 work.columns[name] = replace(
@@ -236,7 +237,8 @@ def drop_stale(work: ConversionState) -> None:
         longest = _longest_stale(given.t, stale)
         work.remark(
             f"{name}: {int(stale.sum())} of {len(stale)} samples repeat the one before exactly, "
-            f"for up to {longest:.3g} s, because no new message had arrived; they are left empty"
+            f"for up to {longest:.3g} s, because no new message had arrived, "
+            f"{work.first_of(given.t[stale])}; they are left empty"
         )
         fresh = Samples(given.t[~stale], given.values[~stale])
         work.columns[name] = replace(column, given=fresh)

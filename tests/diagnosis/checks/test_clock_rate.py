@@ -53,10 +53,27 @@ def test_a_clock_that_is_fast_or_slow(rate: float) -> None:
     assert found[0].changes[0].factor == pytest.approx(rate, abs=0.01)
 
 
+@pytest.mark.parametrize("rates", [(1.06, 1.0, 1.0), (0.9, 1.0), (1.06, 0.94, 1.0)])
+def test_files_with_clock_rates_of_their_own(rates: tuple[float, ...]) -> None:
+    logs = []
+    for ship, rate in zip(fleet(len(rates)), rates, strict=True):
+        logs.append(replace(stamped(ship, np.full(len(ship) - 1, rate)), name=f"run_{rate}"))
+    found = check_clock_rate(logs, DEFAULT.checks)
+    wrong = [rate for rate in rates if rate != 1.0]
+    assert [(f.name, f.run) for f in found] == [("clock_rate", f"run_{rate}") for rate in wrong]
+    for finding, rate in zip(found, wrong, strict=True):
+        assert finding.changes[0].factor == pytest.approx(rate, abs=0.01)
+    assert recording_toml_lines(replace(found[0], run="log 1.csv"), {})[0] == (
+        '[runs."log 1".columns]'
+    )
+
+
 @pytest.mark.parametrize("noise", [0.2, 1.0, 4.0])
 def test_right_logs_have_no_finding(noise: float) -> None:
     for seed in range(10):
-        ships = [winding_ship(10 * seed + k, noise=noise) for k in range(2)]
+        ships = []
+        for k in range(2):
+            ships.append(replace(winding_ship(10 * seed + k, noise=noise), name=f"run_{k}"))
         assert check_clock_rate(ships, DEFAULT.checks) == []
 
 

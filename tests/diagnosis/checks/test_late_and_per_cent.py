@@ -144,6 +144,44 @@ def test_late_sensors_are_found_with_the_line_that_mends_them(
     assert not faults(path)
 
 
+def two_runs(folder: Path, delays: tuple[float, float]) -> list[Path]:
+    """Two files with positions that are late by delays of their own [s]."""
+    other = {}
+    for channel, (mean, size, period) in GOALS["trial_boat"].items():
+        other[channel] = (mean, size, 0.8 * period)
+    paths = []
+    for number, goals in enumerate((GOALS["trial_boat"], other)):
+        log = simulated(folder, "trial_boat", goals)
+        late = dict.fromkeys(("x_m", "y_m"), delays[number])
+        path = logged(log, folder, "trial_boat", goals, late)
+        paths.append(path.rename(folder / f"run_{number}.csv"))
+    return paths
+
+
+@pytest.mark.parametrize("delays", [(0.0, 0.0), (0.0, 1.0), (0.4, 1.2), (1.0, 1.0)])
+@pytest.mark.slow
+def test_each_file_has_a_delay_of_its_own(delays: tuple[float, float], tmp_path: Path) -> None:
+    paths = two_runs(tmp_path, delays)
+    entries = check_files(paths)[0]
+    lines = list[str]()
+    for path, delay in zip(paths, delays, strict=True):
+        faulty = [entry for entry in entries[path] if entry["kind"] == "fault"]
+        assert [entry["name"] for entry in faulty] == ["late_positions"] * (delay > 0.0)
+        for entry in faulty:
+            table = "[latency]"
+            if delays[0] != delays[1]:
+                table = f"[runs.{path.stem}.latency]"
+            assert entry["lines"][0] == table
+            found = [float(line.split(" = ")[1]) for line in entry["lines"][1:]]
+            assert found == pytest.approx([delay, delay], abs=0.11)
+            if table not in lines:
+                lines += entry["lines"]
+    notes = tmp_path / "recording.toml"
+    notes.write_text(notes.read_text() + "\n".join(lines) + "\n")
+    for found_now in check_files(paths)[0].values():
+        assert not [entry for entry in found_now if entry["kind"] == "fault"]
+
+
 @pytest.mark.slow
 def test_a_rate_that_is_late_is_shifted_itself(tmp_path: Path, mine: Path) -> None:
     log = simulated(tmp_path, str(mine), GOALS["mine"])

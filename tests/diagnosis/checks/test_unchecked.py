@@ -43,7 +43,7 @@ def test_late_sensors_that_can_not_be_compared_are_a_remark_of_the_check(
     log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert not remarks(log)
-    monkeypatch.setattr(late_sensors, "_likeliest_delay", fail)
+    monkeypatch.setattr(late_sensors, "_likeliest_delays", fail)
     [entry] = remarks(log)
     words = "whether positions or headings are late could not be computed (Singular matrix)"
     assert entry["evidence"] == words and entry["words"] == "not checked"
@@ -58,7 +58,7 @@ def test_per_cent_that_can_not_be_compared_are_a_remark_beside_that_of_later_che
     monkeypatch.setattr(per_cent_commands, "_look_like_per_cent", lambda *_: True)
     monkeypatch.setattr(per_cent_commands, "_has_other_scale", lambda *_: True)
     monkeypatch.setattr(per_cent_commands, "fit_without_effects", fail)
-    monkeypatch.setattr(late_sensors, "_likeliest_delay", fail)
+    monkeypatch.setattr(late_sensors, "_likeliest_delays", fail)
     assert [entry["evidence"].split(" could")[0] for entry in remarks(log)] == [
         "whether the thrusts are in per cent",
         "whether positions or headings are late",

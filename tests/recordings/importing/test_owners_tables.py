@@ -256,6 +256,8 @@ def test_local_positions_before_the_first_fix_are_left_out(tmp_path):
     columns["east_m"] = texts_of(np.where(rows < 30, 0.0, RUN["east"] - 80.0))
     found, remarks = imported(tmp_path, lines_of(columns))
     assert "omitted 30 positions of 0, 0 before the first fix" in remarks
+    first = RUN["t"][30] - RUN["t"][0]
+    assert f"m away, {first:.3f} s after the log begins" in remarks
     assert np.nanmin(found["x_m"]) > 100.0
 
 

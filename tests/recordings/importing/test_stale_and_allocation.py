@@ -49,7 +49,8 @@ def test_commands_go_on_in_rows_without_a_new_message():
     assert run["thrust_port_N"] == pytest.approx(order)
     assert np.isnan(run["psi_rad"][100:200]).all()
     assert int(np.isnan(run["psi_rad"]).sum()) == 105
-    assert any("psi_rad: 105 of 400 samples repeat" in remark for remark in run.remarks)
+    [remark] = [one for one in run.remarks if "psi_rad: 105 of 400 samples repeat" in one]
+    assert f"first {T[100] - T[0]:.3f} s after the log begins" in remark
 
 
 def test_an_allocation_gives_the_shaft_rate_of_a_thrust_within_its_limits():

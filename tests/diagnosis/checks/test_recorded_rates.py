@@ -1,0 +1,98 @@
+"""Recorded velocities are compared with poses also where every sensor has a rate of its own."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import load_vessel
+from boatsim.recordings.table import Recording
+
+BOAT = load_vessel("trial_boat")
+LATE = 0.9  # [s]
+STEP = 0.1  # [s] between rows; poses are in every second, the yaw rate in the rows between
+
+
+def true_motion(t: Array) -> dict[str, Array]:
+    """A boat on a winding course, by an integral over 1 ms."""
+    fine = np.arange(-5.0, t[-1] + 5.0, 1e-3)
+    r = 0.4 * np.sin(0.7 * fine) + 0.2 * np.sin(1.3 * fine)
+    psi = np.cumsum(r) * 1e-3
+    u = 0.5 + 0.2 * np.sin(0.4 * fine)
+    v = 0.1 * np.sin(0.9 * fine)
+    x = np.cumsum(u * np.cos(psi) - v * np.sin(psi)) * 1e-3
+    y = np.cumsum(u * np.sin(psi) + v * np.cos(psi)) * 1e-3
+    every = {"x_m": x, "y_m": y, "psi_rad": psi, "u_mps": u, "v_mps": v, "r_radps": r}
+    return {name: np.interp(t, fine, values) for name, values in every.items()}
+
+
+def log_of_sensors(seed: int, late: float = 0.0, names: tuple[str, ...] = ()) -> Recording:
+    """Rows at 10 Hz in which each sensor has empty cells; some columns are late."""
+    rng = np.random.default_rng(seed)
+    t = STEP * np.arange(900)
+    true, delayed = true_motion(t), true_motion(t - late)
+    signals = {}
+    for name in true:
+        values = true[name]
+        if name in names:
+            values = delayed[name]
+        signals[name] = values + 0.003 * rng.standard_normal(len(t))
+        every_second = np.arange(len(t)) % 2 == int(name == "r_radps")
+        signals[name] = np.where(every_second, signals[name], np.nan)
+    return Recording("log", t, signals)
+
+
+def changed(log: Recording, **columns: Array) -> Recording:
+    return replace(log, signals=log.signals | columns)
+
+
+FAULTS: dict[str, Callable[[Recording], Recording]] = {
+    "velocity_sign": lambda log: changed(log, r_radps=-log["r_radps"]),
+    "velocity_unit": lambda log: changed(log, u_mps=log["u_mps"] * 3600.0 / 1852.0),
+    "velocity_elsewhere": lambda log: changed(
+        log, v_mps=log["v_mps"] + 0.4 * true_motion(log.t)["r_radps"]
+    ),
+}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_right_sensors_of_different_rates_have_no_finding(seed: int) -> None:
+    assert check_recorded_rates(log_of_sensors(seed), BOAT, DEFAULT.checks) == []
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_faults_are_found_in_rows_with_empty_cells(name: str) -> None:
+    found = check_recorded_rates(FAULTS[name](log_of_sensors(0)), BOAT, DEFAULT.checks)
+    assert [f.name for f in found] == [name]
+
+
+@pytest.mark.parametrize("late", [("r_radps",), ("psi_rad",), ("x_m", "y_m", "psi_rad")])
+def test_a_delay_is_found_in_rows_with_empty_cells(late: tuple[str, ...]) -> None:
+    found = check_recorded_rates(log_of_sensors(1, LATE, late), BOAT, DEFAULT.checks)
+    changes = [change for f in found if f.name == "velocity_late" for change in f.changes]
+    assert {change.column for change in changes} == set(late)
+    for change in changes:
+        assert change.delay == pytest.approx(LATE, abs=STEP)
+
+
+def test_a_turn_that_no_heading_sensor_saw_is_no_fault() -> None:
+    """The heading is missing for 10 s, in which its change is that of the yaw rate."""
+    log = log_of_sensors(2)
+    away = (log.t > 30.0) & (log.t < 40.0)
+    with_gap = changed(log, psi_rad=np.where(away, np.nan, log["psi_rad"]))
+    assert check_recorded_rates(with_gap, BOAT, DEFAULT.checks) == []
+    late = log_of_sensors(2, LATE, ("r_radps",))
+    late = changed(late, psi_rad=np.where(away, np.nan, late["psi_rad"]))
+    [found] = check_recorded_rates(late, BOAT, DEFAULT.checks)
+    assert found.changes[0].delay == pytest.approx(LATE, abs=STEP)
+
+
+def test_a_few_samples_are_not_compared() -> None:
+    log = log_of_sensors(3, LATE, ("r_radps",))
+    few = np.arange(len(log)) % 40 == 1  # 23 of 900 rows
+    log = changed(log, r_radps=np.where(few, -log["r_radps"], np.nan))
+    assert check_recorded_rates(log, BOAT, DEFAULT.checks) == []
