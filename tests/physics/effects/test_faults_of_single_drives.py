@@ -46,7 +46,8 @@ def test_a_dead_band_is_a_candidate_for_each_of_several_drives() -> None:
     names = {f"drive_deadband_{drive}_N" for drive in ("bow", "port", "starboard")}
     assert names == {name for name in several if "drive_deadband" in name}
     two = candidate_library(vessel.load_vessel("trial_boat"))
-    assert "drive_deadband" in two.inapplicable
+    assert "drive_deadband" in two.tried_last
+    assert not {name for name in two.tested_names if "drive_deadband" in name}
 
 
 def test_a_loss_with_the_speed_reduces_the_speed_under_one_drive() -> None:
@@ -112,12 +113,17 @@ def test_faults_of_each_direction_are_candidates_where_several_drives_turn(
     assert names == {name for name in tested if "azimuth" in name}
 
 
-def test_faults_of_each_direction_are_none_where_one_drive_turns_or_two_drives_exist() -> None:
+def test_faults_of_each_direction_are_none_where_one_drive_turns() -> None:
     """Where one drive turns, an error of all directions is the same as that of its direction."""
-    for boat in (platform_of_turning_drives(("bow",)), vessel.load_vessel("trial_boat")):
-        library = candidate_library(boat)
-        assert "drives" in library.inapplicable["azimuth_rate_limit"]
-        assert not {name for name in library.tested_names if "azimuth" in name}
+    library = candidate_library(platform_of_turning_drives(("bow",)))
+    assert "drives" in library.inapplicable["azimuth_rate_limit"]
+    assert not {name for name in library.tested_names if "azimuth" in name}
+
+
+def test_faults_of_each_of_two_directions_are_tried_last() -> None:
+    library = candidate_library(vessel.load_vessel("trial_boat"))
+    assert {"azimuth_rate_limit", "azimuth_lag", "azimuth_delay"} <= set(library.tried_last)
+    assert not {name for name in library.tested_names if "azimuth" in name}
 
 
 def test_directions_that_were_measured_have_no_such_faults() -> None:
