@@ -152,9 +152,10 @@ def complete_rows(
         lost = np.flatnonzero(kept)[missing]
         if not len(lost):
             break
+        count = "1 row is" if len(lost) == 1 else f"{len(lost)} rows are"
         work.remark(
-            f"{len(lost)} rows in which a pose or rate is missing that the others have are left "
-            f"out, {work.first_of(rows[lost])}"
+            f"{count} left out, because a pose or rate is missing that the others have, "
+            f"{work.first_of(rows[lost])}"
         )
         kept[lost] = False
     if kept.sum() < FEWEST_ROWS:
