@@ -25,6 +25,9 @@ FURTHER = "further_"  # prefix of a candidate of which the vessel has one alread
 # prefix of a candidate that acts on the other side of an actuator's lag than usual
 REORDERED = "reordered_"
 FEW = 2  # drives from which on one of them can differ from the others
+OF_TWO_DRIVES = (
+    "an error of one of two drives is tried only where a force stays unexplained, or with --library"
+)
 
 
 class Placeholders(NamedTuple):
@@ -134,10 +137,7 @@ def candidate_library(
             continue
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
         if last_of_few:
-            excluded[name] = reason or (
-                "an error of one of two drives is tried only where a force stays unexplained; add "
-                f"--library {name} to test it"
-            )
+            excluded[name] = reason or OF_TWO_DRIVES
             if not reason:
                 last[name] = ()
             continue
