@@ -14,12 +14,14 @@ from boatsim.diagnosis.recording_mapping import map_recording
 from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
-from boatsim.physics.vessel import Vessel
+from boatsim.physics.vessel import Vessel, load_vessel
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.open_water import OpenWater
 
 STEP = 0.02  # [s] of the simulation and of what the drives do
 PER_ROW = 10  # steps a row: 5 Hz
+TRIAL_CHANNELS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+LARGEST = (0.9, 0.9, 0.5, 0.5)  # [N], [rad] orders to these channels
 NOISE = {"x_m": 0.005, "y_m": 0.005, "psi_rad": 0.005}  # [m], [m], [rad] of a recorded pose
 
 Drive = Callable[[Array], Array]  # orders (T, C), one each step -> what the drives give (T, C)
@@ -84,6 +86,16 @@ def driven(
     return Recording(f"run_{seed}", np.arange(len(rows)) * STEP * PER_ROW, signals, Notes())
 
 
+def trial_boat_runs(drive: Drive) -> list[Recording]:
+    """Three recordings of the trial boat under random orders to `TRIAL_CHANNELS`."""
+    found = []
+    for seed in (1, 2, 3):
+        orders = random_orders(np.random.default_rng(seed), LARGEST, 30, 10)
+        columns = dict(zip(TRIAL_CHANNELS, orders.T, strict=True))
+        found.append(driven(load_vessel("trial_boat"), columns, drive, seed))
+    return found
+
+
 def ranked(
     boat: Vessel, tested: Sequence[str], *recordings: Recording, requested: Sequence[str] = ()
 ) -> Ranking:
@@ -104,17 +116,7 @@ def platform_of_three_drives() -> Vessel:
     for drive, (x, y, angle) in places.items():
         on = {"thrust": f"{drive}_N", "angle": angle}
         effects.append({"use": "thruster", "name": drive, "on": on, "x": x, "y": y})
-    return Vessel.from_effects(
-        name="platform",
-        dof=("surge", "sway", "yaw"),
-        length=1.5,
-        beam=0.9,
-        draught=0.1,
-        body={"mass": 30.0, "roll_inertia": 2.0, "yaw_inertia": 4.0},
-        effects=effects,
-        channels={f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places},
-        diagnosis={"facts": {"still_water": True, "indoors": True}},
-    )
+    return _platform(effects, {f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places})
 
 
 def platform_of_turning_drives(turning: Sequence[str] = ("bow", "port", "starboard")) -> Vessel:
@@ -131,6 +133,11 @@ def platform_of_turning_drives(turning: Sequence[str] = ("bow", "port", "starboa
             on["angle"] = f"{drive}_rad"
             channels[f"{drive}_rad"] = {"low": -3.1416, "high": 3.1416}
         effects.append({"use": "thruster", "name": drive, "on": on, "x": x, "y": y})
+    return _platform(effects, channels)
+
+
+def _platform(effects: Sequence[Mapping[str, object]], channels: Mapping[str, object]) -> Vessel:
+    """A platform of 30 kg in a basin, which its drives move in surge, sway and yaw."""
     return Vessel.from_effects(
         name="platform",
         dof=("surge", "sway", "yaw"),

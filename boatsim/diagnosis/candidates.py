@@ -119,7 +119,6 @@ def candidate_library(
     for source in _sources(vessel, own, fewest):
         kind = source.kind
         name = str(source.table.get("name", kind.type_name()))
-        last_of_few = _is_error_of_one_of_few(kind, vessel, fewest) and not source.requested
         if not has_fittable_parameter(kind):
             if source.requested:
                 raise BadInput(
@@ -130,30 +129,16 @@ def candidate_library(
         least = min(FEW, fewest)
         missing = missing_requirements(kind, vessel, known, source.table, least, source.requested)
         missing = missing or _missing_columns(kind, columns)
-        if last_of_few and kind.of_two:
+        one_of_few = _is_error_of_one_of_few(kind, vessel, fewest) and not source.requested
+        if one_of_few and kind.of_two:
             missing = missing or f"{kind.of_two} describes the difference of two"
         if missing:
             inapplicable[name] = missing
             continue
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
-        if last_of_few:
-            excluded[name] = reason or OF_TWO_DRIVES
-            if not reason:
-                last[name] = ()
-            continue
-        if kind.confounded_with and not source.requested:
-            if reason:
-                excluded[name] = reason
-                continue
-            others = " or ".join(kind.confounded_with)
-            excluded[name] = (
-                f"recordings cannot distinguish it from {others}; add --library {name} to test it"
-            )
-            if kind.tried_last:
-                excluded[name] = (
-                    f"recordings hardly distinguish it from {others}, and it is tried only where a "
-                    f"force stays unexplained; add --library {name} to test it"
-                )
+        if one_of_few or (kind.confounded_with and not source.requested):
+            excluded[name] = reason or _reason_not_tested_first(kind, name, one_of_few)
+            if not reason and (one_of_few or kind.tried_last):
                 last[name] = kind.confounded_with
             continue
         excluded.pop(name, None)
@@ -170,6 +155,19 @@ def candidate_library(
     check_bindings(together, f"{vessel.name}: library")
     placeholders = placeholder_effects(vessel, config.describe)
     return CandidateLibrary(tuple(entries.values()), placeholders, excluded, inapplicable, last)
+
+
+def _reason_not_tested_first(kind: type[Effect], name: str, one_of_few: bool) -> str:
+    """Why a candidate is tested on request only, or where a force stays unexplained, in words."""
+    if one_of_few:
+        return OF_TWO_DRIVES
+    others = " or ".join(kind.confounded_with)
+    if kind.tried_last:
+        return (
+            f"recordings hardly distinguish it from {others}, and it is tried only where a force "
+            f"stays unexplained; add --library {name} to test it"
+        )
+    return f"recordings cannot distinguish it from {others}; add --library {name} to test it"
 
 
 def _exclusions_by_vessel(vessel: Vessel) -> dict[str, str]:

@@ -5,14 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from answers import diagnosed, named, nothing_missing
-from driven_boats import Drive, driven, paused, played, random_orders
+from driven_boats import Drive, paused, played, trial_boat_runs
 
-from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
-
-CHANNELS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-LARGEST = (0.9, 0.9, 0.5, 0.5)  # [N], [rad]
 
 
 def runs(fault: Drive) -> list[Recording]:
@@ -21,12 +17,7 @@ def runs(fault: Drive) -> list[Recording]:
     def drive(orders: Array) -> Array:
         return np.column_stack([fault(orders[:, :2]), orders[:, 2:]])
 
-    found = []
-    for seed in (1, 2, 3):
-        orders = random_orders(np.random.default_rng(seed), LARGEST, 30, 10)
-        columns = dict(zip(CHANNELS, orders.T, strict=True))
-        found.append(driven(vessel.load_vessel("trial_boat"), columns, drive, seed))
-    return found
+    return trial_boat_runs(drive)
 
 
 @pytest.mark.slow

@@ -6,15 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from answers import diagnosed, named
-from driven_boats import STEP, Drive, driven, paused, random_orders
+from driven_boats import STEP, Drive, paused, trial_boat_runs
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
-CHANNELS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-LARGEST = (0.9, 0.9, 0.5, 0.5)  # [N], [rad]
 LAG, PAUSE = 0.8, 0.6  # [s]
 
 
@@ -35,12 +33,7 @@ def runs(fault: Drive, *columns: int) -> list[Recording]:
             done[:, column] = fault(orders[:, column])
         return done
 
-    found = []
-    for seed in (1, 2, 3):
-        orders = random_orders(np.random.default_rng(seed), LARGEST, 30, 10)
-        given = dict(zip(CHANNELS, orders.T, strict=True))
-        found.append(driven(vessel.load_vessel("trial_boat"), given, drive, seed))
-    return found
+    return trial_boat_runs(drive)
 
 
 def test_an_error_of_one_of_two_drives_is_tried_last() -> None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.clock_units import SECONDS, unit_of_clock, without_unit
+from boatsim.recordings.importing.clock_units import DAY, SECONDS, unit_of_clock, without_unit
 from boatsim.recordings.importing.day_counts import day_count
 from boatsim.recordings.importing.foreign_words import plain_name, translate_words
 
@@ -30,7 +30,7 @@ NOT_NOW = set("previous prev last next cycle delta diff step dt start begin end 
 MIN_TIMES = 20  # fewer values do not show that a column increases as times do
 MIN_FORWARD = 0.5  # share of steps forward in a column of times; messages may share a time
 MAX_BACKWARD = 0.05  # share of steps back, where rows are out of order
-DAY, HOUR, MINUTE = 86400.0, 3600.0, 60.0  # [s]
+HOUR, MINUTE = 3600.0, 60.0  # [s]
 # Numbers hhmmss leap by 40 and a step from 59 s to the next minute
 MIN_MINUTE_LEAP = 40.0
 # Last word of a column of a part of the time -> kind of the part

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta, timezone
 import numpy as np
 
 from boatsim.physics.base import Array
+from boatsim.recordings.importing.clock_units import DAY
 
 MONTHS = {  # first letters of months in English, German, Nordic, French, Spanish, Italian, Dutch
     **dict.fromkeys(("jan", "ene", "gen", "janv", "januari"), 1),
@@ -64,7 +65,7 @@ ZONE_NAME = re.compile(r"(?<=\d)\s+(?P<zone>(?!GMT)[A-Z]{2,4}T|MES?Z|BST)(?=$|\s
 ENCLOSED = (("[", "]"), ("'", "'"), ('"', '"'))  # signs around the times of some programs
 TIME_OF_DAY = re.compile(TIME, re.IGNORECASE)
 MINUTES = re.compile(r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})")
-DAY, HOUR = 86400.0, 3600.0  # [s]
+HOUR = 3600.0  # [s]
 MAX_DAYS = 366  # of a year
 CENTURY = 2000  # of a year of two digits
 MIN_DATES = 0.9  # share of the cells with text that are dates, in a column of dates

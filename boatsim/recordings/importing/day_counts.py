@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.physics.base import Array
+from boatsim.recordings.importing.clock_units import DAY
 
 # Name -> 1970-01-01 [days]: of a spreadsheet since 1899-12-30, of MATLAB's datenum since the year 0
 # (R2024a documentation), and of the Julian date since 4713 BC, noon
@@ -12,7 +13,6 @@ EPOCHS = {"": 25569.0, "MATLAB's datenum": 719529.0, "Julian dates": 2440587.5}
 YEARS = (10957.0, 47482.0)  # [days] since 1970 of the years 2000 to 2100
 # [days] A larger median step between rows, 43 s, is of no log; seconds have larger steps than this
 MAX_STEP = 5e-4
-DAY = 86400.0  # [s]
 
 
 class DayCount(NamedTuple):
