@@ -413,7 +413,11 @@ def fit_baseline_models(question: Question) -> Baseline:
 
 
 def select_candidates(
-    question: Question, base: Baseline, loaded: LoadedRecordings, report: Report = ignore_progress
+    question: Question,
+    base: Baseline,
+    loaded: LoadedRecordings,
+    report: Report = ignore_progress,
+    work: int | None = None,
 ) -> Selection:
     """Select the candidate effects that the recordings require.
 
@@ -426,12 +430,13 @@ def select_candidates(
         base: Fits of the vessel without candidate effects.
         loaded: The recordings with their notes.
         report: Receives the progress.
+        work: Work of both selections [steps x dof]; None: `select.budget`.
 
     Returns:
         The ranking with the selected effects, and the problem with the correlation time.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
-    budget = SearchBudget(problem.work_count, problem.config.select.budget)
+    budget = SearchBudget(problem.work_count, work or problem.config.select.budget)
     ranking = select_and_rank_candidates(
         problem, candidates, held_out, report=report, base=base, budget=budget
     )
@@ -517,7 +522,7 @@ def try_last_candidates(
         gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
     if gain < config.select.last_gain:
         return loaded, question, decision
-    selection = select_candidates(again, base, wider, report)
+    selection = select_candidates(again, base, wider, report, config.select.last_budget)
     other = decide_causes(again, add_forces_that_balance(again, selection, report))
     selected = any(name in other.ranking.best.effects for name in tested)
     if selected and _gain(other.ranking) - _gain(ranking) > config.select.last_gain:

@@ -39,6 +39,13 @@ class SelectConfig:
         "has not tried.",
         low=1,
     )
+    last_budget: int = setting(
+        350_000_000,
+        "steps x dof",
+        "Work of the second search, in which candidates that are tried last take part. Half of "
+        "`budget`, so that a diagnosis with both searches ends within ten minutes of CPU.",
+        low=1,
+    )
     again_share: float = setting(
         0.5,
         "1",

@@ -99,6 +99,14 @@ def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(
     assert TIME_NOT_CHOSEN in ranking.skipped
 
 
+def test_a_selection_may_get_less_work_than_the_budget(loaded: LoadedRecordings) -> None:
+    question = question_with(loaded, FAST)
+    base = pipeline.fit_baseline_models(question)
+    ranking = pipeline.select_candidates(question, base, loaded, work=1).ranking
+    assert not ranking.best.effects
+    assert any(what.startswith("weak_reverse was not added") for what in ranking.skipped)
+
+
 def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(
     loaded: LoadedRecordings,
 ) -> None:
