@@ -20,12 +20,14 @@ SLOWEST, FASTEST = 7.0, 12.0  # [1/s] shaft rates of a run
 HELM = 0.5  # [rad] to either side
 SWAY, YAW = -20.0, 30.0  # [N/rad], [N m/rad] of the rudder, 1.5 m behind the middle
 FAN = 5.0  # [N] full thrust of the fan, a fifth of the resistance
-# A lead battery of nominally 24 V; its voltage does not change the revolutions, which a controller
-# keeps.
+# A lead battery of nominally 24 V; neither its voltage nor the current drawn from it changes the
+# revolutions, which a controller keeps.
 NOMINAL = 24.0  # [V]
 FULLEST, EMPTIEST = 25.5, 23.0  # [V] at rest
 SAG = 0.1  # [V s] under load, about 5 % at the highest shaft rate
 VOLTMETER = 0.02  # [V] noise
+LOAD = 10.0  # [A] nominal current, at the approach; it grows with the cube of the shaft rate
+AMMETER = 0.1  # [A] noise
 
 
 def rudder_ship() -> Body:
@@ -60,7 +62,7 @@ def rudder_ship() -> Body:
             "shaft_rps": {"low": 0.0, "high": 15.0},
             "fan_N": {"low": 0.0, "high": FAN},
         },
-        measured={"battery_V": {"neutral": NOMINAL}},
+        measured={"battery_V": {"neutral": NOMINAL}, "battery_A": {"neutral": LOAD}},
         diagnosis={"facts": {"indoors": True, "position_fix": "tracking"}},
     )
     M = np.array([mass, mass, inertia]) + added
@@ -84,7 +86,8 @@ def rudder_ship() -> Body:
         signals = dict(zip(POSE, states[:, :3].T, strict=True)) | {"r_radps": states[:, 5]}
         voltage = rng.uniform(EMPTIEST, FULLEST) - SAG * shaft
         voltage += VOLTMETER * rng.standard_normal(len(times))
+        drawn = LOAD * (shaft / SHAFT) ** 3 + AMMETER * rng.standard_normal(len(times))
         signals |= {"helm_rad": helm, "shaft_rps": shaft, "fan_N": fan}
-        return signals | {"battery_V": voltage}
+        return signals | {"battery_V": voltage, "battery_A": drawn}
 
     return Body(vessel, times, noise, run, 6)

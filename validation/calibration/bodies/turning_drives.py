@@ -29,16 +29,18 @@ BRAKE = (6.0, 6.0, 4.0)  # [N s/m, N s/m, N m s] of it
 OPPOSED = 3.0  # [N] of the drives against each other, which moves nothing
 DEPTH = 0.2  # [m] twice the draught, where the coefficients of the vessel file were found
 CURRENT = 0.1  # [m/s] largest, to north and to east
-# Each drive has a lead battery of nominally 24 V. Its voltage does not change the thrust, because a
-# controller keeps the revolutions.
+# Each drive has a lead battery of nominally 24 V. Neither its voltage nor the current drawn from it
+# changes the thrust, because a controller keeps the revolutions.
 NOMINAL = 24.0  # [V]
 FULLEST, EMPTIEST = 25.5, 23.0  # [V] at rest
 SAG = 0.15  # [V/N] under load, about 5 % at full thrust
 VOLTMETER = 0.02  # [V] noise
+FULL_LOAD = 20.0  # [A] nominal current, at full thrust
+AMMETER = 0.1  # [A] noise
 
 
 def turning_drives() -> Body:
-    """A boat with three azimuth drives, their voltages, a known depth, walls and a current.
+    """A boat with three azimuth drives whose supplies are measured, in a basin with a current.
 
     The current is uniform and steady in a run, so that Newton's laws hold in axes that move with
     the water: M nu_r' + C(nu_r) nu_r + D nu_r = tau, and the place is that in the water plus the
@@ -56,6 +58,7 @@ def turning_drives() -> Body:
         channels[f"{name}_N"] = {"low": -ASTERN, "high": AHEAD}
         channels[f"{name}_rad"] = {"low": -TURN, "high": TURN}
         measured[f"{name}_V"] = {"neutral": NOMINAL}
+        measured[f"{name}_A"] = {"neutral": FULL_LOAD}
     vessel = Vessel.from_effects(
         name="trial_turning_drives",
         dof=("surge", "sway", "yaw"),
@@ -113,6 +116,8 @@ def turning_drives() -> Body:
             rest = rng.uniform(EMPTIEST, FULLEST)
             voltage = rest - SAG * np.abs(thrust) + VOLTMETER * rng.standard_normal(len(times))
             signals[f"{name}_V"] = voltage
+            drawn = FULL_LOAD * np.abs(thrust) / AHEAD
+            signals[f"{name}_A"] = drawn + AMMETER * rng.standard_normal(len(times))
         return signals
 
     return Body(vessel, times, noise, run, 4)
