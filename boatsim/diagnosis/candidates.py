@@ -28,6 +28,10 @@ FEW = 2  # drives from which on one of them can differ from the others
 OF_TWO_DRIVES = (
     "an error of one of two drives is tried only where a force stays unexplained, or with --library"
 )
+OF_A_KIND = (
+    "an error that the thrusts or directions of two drives share is tried only where a force stays "
+    "unexplained, or with --library"
+)
 
 
 class Placeholders(NamedTuple):
@@ -160,7 +164,7 @@ def candidate_library(
 def _reason_not_tested_first(kind: type[Effect], name: str, one_of_few: bool) -> str:
     """Why a candidate is tested on request only, or where a force stays unexplained, in words."""
     if one_of_few:
-        return OF_TWO_DRIVES
+        return OF_A_KIND if kind.jointly else OF_TWO_DRIVES
     others = " or ".join(kind.confounded_with)
     if kind.tried_last:
         return (
@@ -251,7 +255,10 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
 def _sources_of_single_ones(
     name: str, kind: type[Effect], vessel: Vessel, requested: bool
 ) -> Iterator[_Source]:
-    """An error of each single drive, named after it."""
+    """An error of each single drive, named after it, or one that all of them have together."""
+    if kind.jointly:
+        yield _Source({"use": name}, kind, requested)
+        return
     for one in single_subjects(kind, vessel):
         yield _Source({"use": name, "name": f"{name}_{one}", "on": [one]}, kind, requested)
 

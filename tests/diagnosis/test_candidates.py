@@ -357,11 +357,18 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     single |= {f"drive_fade_{name}" for name in BOAT.names_of("thruster")}
     single |= {f"drive_loss_with_speed_{name}" for name in BOAT.names_of("thruster")}
     own = ("drive_lag", "drive_delay", "drive_rate_limit", "drive_exponent", "drive_limit")
-    for effect in (*own, "drive_reversal_pause", "drive_hysteresis", "drive_deadband"):
+    for effect in (
+        *own,
+        "drive_reversal_pause",
+        "drive_hysteresis",
+        "drive_deadband",
+        "drive_weak_reverse",
+    ):
         single |= {f"{effect}_{channel}" for channel in ("thrust_port_N", "thrust_starboard_N")}
     for channel in ("steer_port_rad", "steer_starboard_rad"):
         for effect in ("rate_limit", "lag", "delay", "backlash"):
             single.add(f"azimuth_{effect}_{channel}")
+    single |= {"steering_lag", "steering_delay", "thrust_delay", "thrust_rate_limit"}
     assert set(other.tested_names) - set(usual.tested_names) == single
     assert "one of two drives" in usual.excluded["drive_lag"]
     assert [e.name for e in other.placeholders] == ["described_1"]

@@ -50,6 +50,16 @@ def lossy(order: Array, speed: Array) -> Array:
     return np.where(PORT, order - 0.3 * speed * abs(order), order)
 
 
+def weak_astern(order: Array, speed: Array) -> Array:
+    """The port drive gives less than specified where it pushes astern."""
+    return np.where(PORT & (order < 0.0), 0.6 * order, order)
+
+
+def all_weak_astern(order: Array, speed: Array) -> Array:
+    """All drives give less than specified where they push astern."""
+    return np.where(order < 0.0, 0.6 * order, order)
+
+
 def derivatives(state: Array, time: float, order: Array, fault: Fault) -> list[float]:
     """Rates of north, east, heading and the velocities ahead, to starboard and of turn."""
     u, v, r = state[3:]
@@ -103,6 +113,16 @@ def test_a_weak_drive_is_not_taken_for_one_with_a_dead_band(tmp_path: Path) -> N
 @pytest.mark.slow
 def test_a_drive_that_alone_loses_thrust_with_the_speed_is_named(tmp_path: Path) -> None:
     named(answer(lossy, tmp_path), "drive_loss_with_speed_port", {"loss_spm": 0.3})
+
+
+@pytest.mark.slow
+def test_a_drive_that_alone_is_weak_astern_is_named(tmp_path: Path) -> None:
+    named(answer(weak_astern, tmp_path), "drive_weak_reverse_port_N", {"astern_factor": 0.6})
+
+
+@pytest.mark.slow
+def test_drives_that_are_equally_weak_astern_have_one_fault(tmp_path: Path) -> None:
+    named(answer(all_weak_astern, tmp_path), "weak_reverse", {"astern_factor": 0.6})
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
 """A craft with three azimuth drives, of which one does not turn as commanded: it is found.
 
-Its direction turns slowly, lags, is late, or has play.
+Its direction turns slowly, lags, is late, or has play. If all of them are alike, that is one fault.
 
 The recordings come from an integrator that shares no code with the tool."""
 
@@ -10,10 +10,17 @@ from driven_boats import platform_of_turning_drives
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import candidate_library
+from boatsim.diagnosis.fit import unfitted_hypothesis
 from boatsim.diagnosis.prior_noise import prior_noise_levels
-from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.problem import Problem, free_parameter_values
 from boatsim.diagnosis.recording_mapping import map_recording
-from boatsim.diagnosis.search.ranking import Ranking, select_and_rank_candidates
+from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.equal_errors import merge_equal_errors
+from boatsim.diagnosis.search.ranking import (
+    Ranking,
+    fit_baseline,
+    select_and_rank_candidates,
+)
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording
@@ -30,6 +37,8 @@ TESTED = (
     "steering_backlash",
     *(f"{effect}_{drive}_rad" for effect in AZIMUTH for drive in PLACES),
     *(f"drive_rate_limit_{drive}_N" for drive in PLACES),
+    "steering_lag",
+    "steering_delay",
 )
 
 
@@ -93,12 +102,15 @@ def sailed(
     return Recording(f"run_{seed}", np.arange(ROWS) / RATE, signals, Notes())
 
 
-def ranked(*recordings: Recording) -> Ranking:
+def problem_of(*recordings: Recording) -> Problem:
     effects = [e for e in candidate_library(CRAFT).compiled_effects if e.name in TESTED]
     program = Program(CRAFT, effects)
     mapped = [map_recording(recording, program) for recording in recordings]
-    problem = Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
-    return select_and_rank_candidates(problem, TESTED)
+    return Problem(mapped, prior_noise_levels(CRAFT, recordings), {"thrust": 0.05})
+
+
+def ranked(*recordings: Recording) -> Ranking:
+    return select_and_rank_candidates(problem_of(*recordings), TESTED)
 
 
 PORT = np.arange(3) == 1
@@ -122,6 +134,52 @@ def test_the_drive_that_does_not_turn_as_commanded_is_found_with_the_size_of_its
     value, sd = ranking.best.value(f"{effect}_port_rad", parameter)
     assert abs(value - true) < max(4.0 * sd, 0.05 * true)
     assert sd < 0.2 * true
+
+
+@pytest.mark.parametrize(
+    ("fault", "effect", "parameter", "true"),
+    [
+        ({"lag": np.full(3, 0.8)}, "steering_lag", "time_constant", 0.8),
+        ({"late": np.full(3, 6.0)}, "steering_delay", "delay", 0.6),
+    ],
+)
+@pytest.mark.slow
+def test_equal_faults_of_all_directions_are_one_fault(
+    fault: dict[str, Array], effect: str, parameter: str, true: float
+) -> None:
+    ranking = ranked(sailed(1, **fault), sailed(2, **fault))
+    assert [one.name for one in ranking.named] == [effect]
+    value, sd = ranking.best.value(effect, parameter)
+    assert abs(value - true) < max(4.0 * sd, 0.05 * true)
+    assert sd < 0.2 * true
+
+
+SINGLE_DELAYS = tuple(f"azimuth_delay_{drive}_rad" for drive in PLACES)
+
+
+@pytest.mark.parametrize(
+    ("rows", "wanted"),
+    [
+        ((6.0, 6.0, 6.0), {"steering_delay"}),
+        ((2.0, 6.0, 6.0), set(SINGLE_DELAYS)),
+    ],
+)
+@pytest.mark.slow
+def test_single_delays_are_merged_if_they_are_equal_only(
+    rows: tuple[float, ...], wanted: set[str]
+) -> None:
+    problem = problem_of(sailed(1, late=np.array(rows)))
+    sets = CandidateSets(problem, TESTED, fit_baseline(problem).recalibrated)
+    free = problem.free_parameters(SINGLE_DELAYS)
+    begin = dict(
+        zip(((name, "delay") for name in SINGLE_DELAYS), 0.1 * np.array(rows), strict=True)
+    )
+    theta = free_parameter_values(free, {**sets.base.values(), **begin})
+    singles = sets.converged_fit(unfitted_hypothesis(SINGLE_DELAYS, free, theta, sets.base.levels))
+    merged = merge_equal_errors(sets, singles)
+    assert set(merged.effects) == wanted
+    if wanted == {"steering_delay"}:
+        assert merged.value("steering_delay", "delay")[0] == pytest.approx(0.6, abs=0.02)
 
 
 @pytest.mark.slow

@@ -38,7 +38,9 @@ def runs(fault: Drive, *columns: int) -> list[Recording]:
 
 def test_an_error_of_one_of_two_drives_is_tried_last() -> None:
     library = candidate_library(vessel.load_vessel("trial_boat"))
-    assert {"drive_lag", "drive_delay", "drive_exponent"} <= set(library.tried_last)
+    assert {"drive_lag", "drive_delay", "drive_exponent", "drive_weak_reverse"} <= set(
+        library.tried_last
+    )
     assert "thrust_imbalance" in library.inapplicable["drive_gain_error"]
     assert "only where a force stays unexplained" in library.excluded["drive_lag"]
     assert not any(name.startswith("drive_lag") for name in library.tested_names)
@@ -80,6 +82,15 @@ def test_a_pause_of_one_drive_is_named_with_its_length(tmp_path: Path) -> None:
 
     answer = diagnosed(runs(fault, 0), tmp_path, "trial_boat")
     named(answer, "drive_reversal_pause_thrust_port_N", {"pause_s": PAUSE})
+
+
+@pytest.mark.slow
+def test_one_drive_that_is_weak_astern_is_named_with_its_factor(tmp_path: Path) -> None:
+    def fault(orders: Array) -> Array:
+        return np.where(orders < 0.0, 0.6 * orders, orders)
+
+    answer = diagnosed(runs(fault, 0), tmp_path, "trial_boat")
+    named(answer, "drive_weak_reverse_thrust_port_N", {"astern_factor": 0.6})
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.budget import in_addition_to_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
+from boatsim.diagnosis.search.equal_errors import merge_equal_errors
 from boatsim.diagnosis.search.evidence import (
     combined_gain,
     log_evidence_gains,
@@ -27,7 +28,8 @@ def select_forward(sets: CandidateSets, best: Fit, among: Sequence[str] = ()) ->
     """Add candidate effects to a fit one by one, each time the one that gains most evidence.
 
     The selection ends when no candidate gains enough. Earlier effects that a newer one makes
-    unnecessary are removed. When the budget of the search is spent, no further candidate is added.
+    unnecessary are removed, and equal errors of several drives become one of all drives. When the
+    budget of the search is spent, no further candidate is added.
 
     Args:
         sets: Cache of the fits of candidate sets, with the estimation problem.
@@ -62,7 +64,7 @@ def select_forward(sets: CandidateSets, best: Fit, among: Sequence[str] = ()) ->
             sets.budget.record_skipped_attempt(_not_added(name, best, gain))
             break
         converged = sets.refit_from_assumed_disturbance(sets.converged_fit(tested[name]))
-        further = _without_unnecessary(sets, converged)
+        further = merge_equal_errors(sets, _without_unnecessary(sets, converged))
         if set(further.effects) == set(best.effects):
             break  # the newest one was removed again
         best = further

@@ -8,6 +8,7 @@ from numba import njit
 
 from boatsim.physics.base import (
     Array,
+    Boat,
     ChannelEffect,
     SignalSegment,
     param,
@@ -175,6 +176,17 @@ class CommandDelay(ChannelEffect):
         within=(0.0, 1.6),
     )
 
+    def missing_for_test(self, vessel: Boat) -> str:
+        """Return that the effect delays all commands as `command_delay` does, if so; else "".
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        every = vessel.target_actuators(CommandDelay())
+        if type(self).jointly and set(vessel.target_actuators(self)) == set(every):
+            return "no other commands, so that command_delay describes the same"
+        return ""
+
 
 DriveDelay = preset_effect(
     CommandDelay,
@@ -183,6 +195,7 @@ DriveDelay = preset_effect(
     shown_by="fast steps of this drive alone",
     acts_on="thrust|shaft",
     once_per="actuator",
+    of_all=("command_delay", "thrust_delay"),
     frees={
         "delay": {
             "words": "dead time of this drive, beyond that of the vessel's file",
@@ -199,10 +212,46 @@ AzimuthDelay = preset_effect(
     shown_by="fast steps of the direction of this drive alone",
     acts_on="angle",
     once_per="actuator",
+    of_all=("command_delay", "steering_delay"),
     ruled_out_by={"steering_measured": (True,)},
     frees={
         "delay": {
             "words": "dead time of the direction of this drive, beyond that of the vessel's file",
+            "spread": 0.5,
+        },
+    },
+)
+
+
+SteeringDelay = preset_effect(
+    CommandDelay,
+    "SteeringDelay",
+    words="the commanded directions of all drives take effect after the same dead time",
+    shown_by="fast steps of the directions",
+    acts_on="angle",
+    once_per="actuator",
+    jointly=True,
+    ruled_out_by={"steering_measured": (True,)},
+    frees={
+        "delay": {
+            "words": "dead time of the directions, beyond that of the vessel's file",
+            "spread": 0.5,
+        },
+    },
+)
+
+
+ThrustDelay = preset_effect(
+    CommandDelay,
+    "ThrustDelay",
+    words="the commanded thrusts of all drives take effect after the same dead time",
+    shown_by="fast steps of the thrusts",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    jointly=True,
+    frees={
+        "delay": {
+            "words": "dead time of the thrusts, beyond that of the vessel's file",
             "spread": 0.5,
         },
     },

@@ -19,6 +19,7 @@ class DriveGainError(CoefficientRelease):
     symbols: ClassVar = {"factor": "k"}
     once_per: ClassVar[str] = "thruster"
     of_two: ClassVar[str] = "thrust_imbalance"
+    of_all: ClassVar = ("thrust_gain_error",)
     words: ClassVar[str] = "one thruster is stronger or weaker than specified"
     shown_by: ClassVar[str] = "a staircase of this thruster alone"
     source: ClassVar[str] = (

@@ -149,6 +149,14 @@ SteeringRateLimit = preset_effect(
 )
 
 
+# Fit of a rate of thrust [largest commands of the drive per second]
+THRUST_RATE: ParameterChanges = {
+    "high": IMMEDIATE,
+    "spread": 1.0,
+    "inactive_value": IMMEDIATE,
+    "usual": 1.0,
+}
+
 DriveRateLimit = preset_effect(
     RateLimit,
     "DriveRateLimit",
@@ -156,20 +164,37 @@ DriveRateLimit = preset_effect(
     shown_by="large steps of this drive alone",
     acts_on="thrust|shaft",
     once_per="actuator",
+    of_all=("thrust_rate_limit",),
     limits=("rate",),
     thresholds={"rate": (0.1, 0.4, 1.5)},
     frees={
         "rate": {
-            "high": IMMEDIATE,
+            **THRUST_RATE,
             "words": "largest rate of change of this drive, in the unit of its channel per second",
-            # in largest commands of the drive per second
-            "spread": 1.0,
-            "inactive_value": IMMEDIATE,
-            "usual": 1.0,
         },
     },
     fixed={"instant": IMMEDIATE},
 )
+
+ThrustRateLimit = preset_effect(
+    RateLimit,
+    "ThrustRateLimit",
+    words="the thrusts or shaft speeds of all drives change at the same limited rate",
+    shown_by="large steps of the thrusts",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    jointly=True,
+    limits=("rate",),
+    thresholds={"rate": (0.1, 0.4, 1.5)},
+    frees={
+        "rate": {
+            **THRUST_RATE,
+            "words": "largest rate of change, in the unit of the channels per second",
+        },
+    },
+    fixed={"instant": IMMEDIATE},
+)
+
 
 AzimuthRateLimit = preset_effect(
     RateLimit,
@@ -178,6 +203,7 @@ AzimuthRateLimit = preset_effect(
     shown_by="large steps of the direction of this drive alone",
     acts_on="angle",
     once_per="actuator",
+    of_all=("steering_rate_limit",),
     limits=("rate",),
     ruled_out_by={"steering_measured": (True,)},
     starts=ANGLE_STARTS,

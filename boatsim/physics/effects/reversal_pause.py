@@ -149,6 +149,7 @@ DriveReversalPause = preset_effect(
     words="one drive stands still for a time before it pushes the other way",
     shown_by="thrust of this drive that changes from ahead to astern and back without a stop",
     once_per="actuator",
+    of_all=("reversal_pause",),
     frees={
         "pause": {
             "words": "time for which this drive stands still, beyond that of the vessel's file",

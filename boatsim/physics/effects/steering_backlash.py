@@ -103,6 +103,7 @@ AzimuthBacklash = preset_effect(
     words="the steering of one drive has play, so its direction lags when the steering reverses",
     shown_by="small steering reversals of this drive under thrust",
     once_per="actuator",
+    of_all=("steering_backlash",),
     # before a lag of its drive only, so that the candidates of several drives stay few
     either_side=False,
     frees={

@@ -92,6 +92,7 @@ DriveDeadband = preset_effect(
     shown_by="slow runs at several small thrust levels of this drive alone",
     acts_on="thrust|shaft",
     once_per="actuator",
+    of_all=("thrust_deadband", "shaft_deadband"),
     # before a lag of its drive only, so that the candidates of several drives stay few
     either_side=False,
     frees={

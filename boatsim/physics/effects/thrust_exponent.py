@@ -117,6 +117,7 @@ DriveExponent = preset_effect(
     ),
     shown_by="runs of this drive at several thrust levels between slow and full",
     once_per="actuator",
+    of_all=("thrust_exponent",),
     frees={
         "exponent": {
             "words": "exponent n of the curve of this drive, beyond that of the vessel's file",

@@ -82,6 +82,7 @@ DriveFade = preset_effect(
     words="the thrust of one drive decreases in the course of a run",
     shown_by="the same commands of this drive at the begin and at the end of a long run",
     once_per="thruster",
+    of_all=("thrust_fade",),
     frees={
         "rate": {
             "words": "share of the thrust of this drive that is lost in a second",

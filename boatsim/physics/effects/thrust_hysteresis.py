@@ -68,6 +68,7 @@ DriveHysteresis = preset_effect(
     words="the commands of one drive have play: rising ones give less thrust than falling ones",
     shown_by="a staircase of thrust levels of this drive, up and down again",
     once_per="actuator",
+    of_all=("thrust_hysteresis",),
     frees={
         "width": {"words": "total play of this drive", "spread": 0.2},
         "behind": {"spread": 0.5},

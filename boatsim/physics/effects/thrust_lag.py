@@ -100,6 +100,7 @@ DriveLag = preset_effect(
     words="the thrust of one drive follows its command with a lag of its own",
     shown_by="fast steps of this drive alone",
     once_per="actuator",
+    of_all=("thrust_lag",),
     frees={
         "time_constant": {
             "words": "time constant of this drive, beyond that of the vessel's file: time to 63 % "
@@ -117,11 +118,31 @@ AzimuthLag = preset_effect(
     shown_by="fast steps of the direction of this drive alone",
     acts_on="angle",
     once_per="actuator",
+    of_all=("steering_lag",),
     ruled_out_by={"steering_measured": (True,)},
     frees={
         "time_constant": {
             "words": "time constant of the direction of this drive, beyond that of the vessel's "
             "file: time to 63 % of a step",
+            "spread": 0.6,
+        },
+    },
+)
+
+
+SteeringLag = preset_effect(
+    ThrustLag,
+    "SteeringLag",
+    words="the directions of all drives follow their commands with the same lag",
+    shown_by="fast steps of the directions",
+    acts_on="angle",
+    once_per="actuator",
+    jointly=True,
+    ruled_out_by={"steering_measured": (True,)},
+    frees={
+        "time_constant": {
+            "words": "time constant of the directions, beyond that of the vessel's file: time to "
+            "63 % of a step",
             "spread": 0.6,
         },
     },

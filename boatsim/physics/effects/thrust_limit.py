@@ -131,6 +131,7 @@ DriveLimit = preset_effect(
     words="the thrust of one drive is limited: large commands give no more than a part of it",
     shown_by="runs of this drive at several thrust levels between half and full",
     once_per="actuator",
+    of_all=("thrust_limit", "shaft_limit"),
     frees={
         "share": {
             "words": "limit of the thrust, as a share of the largest command of this drive",

@@ -126,6 +126,7 @@ DriveLossWithSpeed = preset_effect(
     words="the thrust of one drive decreases with the speed of the boat, unlike that of the others",
     shown_by="the same command of this drive alone from rest and at full speed",
     once_per="thruster",
+    of_all=("thrust_loss_with_speed",),
     frees={
         "loss": {
             "low": -50.0,  # where all drives of the vessel's file lose more than this one

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
+from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import DEEDS
 
 
@@ -77,3 +77,22 @@ class WeakReverse(ChannelEffect):
         inactive_value=1.0,
         in_per_cent="astern thrust is {share} of the commanded thrust",
     )
+
+
+DriveWeakReverse = preset_effect(
+    WeakReverse,
+    "DriveWeakReverse",
+    words="one drive pushes less astern than commanded",
+    words_above="one drive pushes more astern than commanded",
+    shown_by="this drive alone ahead and astern",
+    once_per="actuator",
+    of_all=("weak_reverse",),
+    # before a lag of its drive only, so that the candidates of several drives stay few
+    either_side=False,
+    frees={
+        "astern_factor": {
+            "words": "astern thrust of this drive over the thrust that the command gives in the "
+            "model",
+        },
+    },
+)

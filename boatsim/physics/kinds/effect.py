@@ -98,6 +98,10 @@ class Effect(CheckedParameters):
     once_per: ClassVar[str] = ""
     # effect that describes the same where there are two instances
     of_two: ClassVar[str] = ""
+    # effects that describe equal errors of all instances; one of them takes the place of several
+    of_all: ClassVar[tuple[str, ...]] = ()
+    # one candidate for all of `once_per` together, where each of them may be one
+    jointly: ClassVar[bool] = False
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
     # a candidate also where the others leave a force unexplained, or include a confounded one

@@ -10,6 +10,7 @@ from driven_boats import platform_of_three_drives, platform_of_turning_drives
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
+from boatsim.physics.content import load_class, shipped_content_names
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.open_water import OpenWater
 
@@ -39,6 +40,25 @@ def test_a_dead_band_reduces_the_thrust_of_its_drive_alone(command: float, thrus
     others = {"bow_N": 1.0, "starboard_N": 3.0}
     found = final_state(dead, {"port_N": command, **others})
     assert found == pytest.approx(final_state(boat, {"port_N": thrust, **others}))
+
+
+@pytest.mark.parametrize(("command", "thrust"), [(5.0, 5.0), (-5.0, -3.0)])
+def test_a_weak_reverse_reduces_the_thrust_astern_of_its_drive_alone(
+    command: float, thrust: float
+) -> None:
+    boat = platform_of_three_drives()
+    weak = boat.with_effect({"use": "drive_weak_reverse", "astern_factor": 0.6, "on": ["port_N"]})
+    others = {"bow_N": -2.0, "starboard_N": -4.0}
+    found = final_state(weak, {"port_N": command, **others})
+    assert found == pytest.approx(final_state(boat, {"port_N": thrust, **others}))
+
+
+def test_a_weak_reverse_is_a_candidate_for_drives_that_can_push_astern() -> None:
+    names = {f"drive_weak_reverse_{drive}_N" for drive in ("bow", "port", "starboard")}
+    assert names <= set(candidate_library(platform_of_three_drives()).tested_names)
+    one_way = candidate_library(platform_of_turning_drives())
+    assert not names & set(one_way.tested_names)
+    assert one_way.inapplicable["drive_weak_reverse_port_N"] == "no command is negative"
 
 
 def test_a_dead_band_is_a_candidate_for_each_of_several_drives() -> None:
@@ -98,6 +118,55 @@ def test_play_of_one_direction_follows_the_ends_of_the_play() -> None:
         low, high = FORTH_AND_BACK[i] - 0.5 * width, FORTH_AND_BACK[i] + 0.5 * width
         port[i] = min(max(port[i - 1], low), high)
     turned_alike({"use": "azimuth_backlash", "width": width}, FORTH_AND_BACK, port, 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("common", "single", "setting", "kind"),
+    [
+        ("steering_lag", "azimuth_lag", {"time_constant": 0.5}, "rad"),
+        ("steering_delay", "azimuth_delay", {"delay": 0.4}, "rad"),
+        ("thrust_delay", "drive_delay", {"delay": 0.4}, "N"),
+        ("thrust_rate_limit", "drive_rate_limit", {"rate": 5.0}, "N"),
+    ],
+)
+def test_an_error_of_all_drives_is_that_of_each_of_them(
+    common: str, single: str, setting: dict[str, float], kind: str
+) -> None:
+    boat = platform_of_turning_drives()
+    changed, sound = boat.with_effect({"use": common, **setting}), boat
+    for drive in ("bow", "port", "starboard"):
+        channel = f"{drive}_{kind}"
+        boat = boat.with_effect({"use": single, "name": channel, "on": [channel], **setting})
+    pushed = np.where(T > 0.0, 5.0, 0.0)
+    commands = {"bow_N": 0.5 * pushed, "port_N": pushed, "starboard_N": 0.3 * pushed}
+    commands |= {"bow_rad": -TURN, "port_rad": TURN, "starboard_rad": 0.3 * TURN}
+    found = final_state(changed, commands)
+    assert found == pytest.approx(final_state(boat, commands), rel=1e-9, abs=1e-12)
+    assert abs(found - final_state(sound, commands)).max() > 0.005
+
+
+def test_errors_that_all_drives_share_are_candidates_where_those_of_single_ones_are() -> None:
+    turning = candidate_library(platform_of_turning_drives()).tested_names
+    assert {"steering_lag", "steering_delay", "thrust_delay", "thrust_rate_limit"} <= set(turning)
+    one = candidate_library(platform_of_turning_drives(("bow",)))
+    assert not {"steering_lag", "steering_delay"} & set(one.tested_names)
+    fixed = candidate_library(platform_of_three_drives())
+    assert "command_delay" in fixed.inapplicable["thrust_delay"]
+    assert "thrust_rate_limit" in fixed.tested_names
+    two = candidate_library(vessel.load_vessel("trial_boat"))
+    assert {"steering_lag", "steering_delay"} <= set(two.tried_last)
+
+
+def test_every_error_of_a_single_drive_has_one_of_all_drives_with_its_parameters() -> None:
+    for name in shipped_content_names("effect"):
+        kind = load_class("effect", name)
+        if not kind.once_per or kind.jointly:
+            continue
+        assert kind.of_all, name
+        own = {key for key, about in kind.params().items() if about.fit}
+        for common in kind.of_all:
+            other = load_class("effect", common)
+            assert own <= {key for key, about in other.params().items() if about.fit}
 
 
 AZIMUTH = ("azimuth_lag", "azimuth_delay", "azimuth_backlash", "azimuth_rate_limit")
