@@ -69,6 +69,8 @@ class Real:
     # begin of a run and at its end
     supply: float = 0.0
     charge: tuple[float, float] = (1.0, 1.0)
+    # share of the thrust lost at the nominal current of the battery, by its inner resistance
+    resistance: float = 0.0
     walk: float = 0.0  # side force per thrust astern
     cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
     trim: float = 0.0  # [m] by which the hull's own mass is ahead
@@ -140,6 +142,9 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
         thrust = thrust * (1.0 - 1.1 * real.fade * t / (1.0 + 0.005 * t))
     if real.supply:  # a part of the voltage is lost in the leads
         thrust = thrust * (1.1 * voltage(t, real) - 0.1) ** (0.9 * real.supply)
+    if real.resistance:  # thrust is a power of the voltage, which falls with the current
+        sag = 0.65 * real.resistance * drawn(t, command[:2])
+        thrust = thrust * (1.0 - sag) ** 1.6
     steer = command[2:] + np.array(real.bent) * np.cos(command[2:])  # a rod of the wrong length
     force = pushed(thrust, steer, real) + damped(nu, real) + held(y, c, s, real)
     separated = 1.1 - 0.3 * nu[1] ** 2 / (
@@ -163,6 +168,12 @@ def voltage(t: float, real: Real) -> float:
     """Voltage of the supply over the nominal one: other consumers come and go."""
     full, empty = real.charge
     return full + (empty - full) * t / 40.0 + 0.03 * sin(0.5 * t) * cos(0.13 * t)
+
+
+def drawn(t: float, command: Array) -> float:
+    """Current over the nominal one: of the drives, and of consumers that are switched on and off."""
+    others = 0.25 + 0.2 * (sin(0.37 * t) > 0.2) + 0.15 * (cos(0.71 * t) > 0.5)
+    return float(others + 0.3 * np.sum(abs(command) ** 1.5))
 
 
 def stowed(real: Real) -> tuple[tuple[float, float], ...]:

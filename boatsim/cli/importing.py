@@ -27,6 +27,8 @@ from boatsim.recordings.importing.recording_notes import (
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
 from boatsim.recordings.importing.signal_listing import signal_table
+from boatsim.recordings.importing.supply_currents import supply_current_lines
+from boatsim.recordings.importing.unnamed_inputs import unnamed_input_lines
 from boatsim.recordings.importing.voltages import voltage_lines
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import read, write_csv
@@ -95,7 +97,7 @@ def _propose_map(
             drives.append(_vessel_channel(boat, channel, low, high))
         speed = partial(_speed_ahead, boat)
         text = propose_map(log, vessel, drives, boat.dof, boat.columns, speed, boat.turns_over)
-        text += _measured_lines(boat, log)
+        text += _measured_lines(boat, log) + unnamed_input_lines(boat.measured, log)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -159,6 +161,9 @@ def _measured_lines(boat: Vessel, log: Log) -> str:
         words = about.about or "measured, not commanded"
         if unit_of(name) == "V":
             lines += voltage_lines(name, words, log)
+            continue
+        if unit_of(name) == "A":
+            lines += supply_current_lines(name, words, about.neutral, log)
             continue
         lines += f'# {name} = "..."  # CHECK: {words}\n'
         if name.endswith("_m"):

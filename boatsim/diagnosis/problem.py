@@ -33,7 +33,7 @@ from boatsim.physics.vessel import Vessel
 # side of the actuator to which a parameter of a channel effect belongs, by its name
 SIDES = {"port": -1, "middle": 0, "starboard": 1}
 REFERENCE_MASS = 4.6  # [kg] of the hull for which effects specify their priors
-# dimensions of a unit: powers of mass, length and time; a voltage does not grow with the hull
+# dimensions of a unit: powers of mass, length and time; electric units do not grow with the hull
 SYMBOLS = {
     "N": (1, 1, -2),
     "kg": (1, 0, 0),
@@ -41,6 +41,7 @@ SYMBOLS = {
     "s": (0, 0, 1),
     "rad": (0, 0, 0),
     "V": (0, 0, 0),
+    "A": (0, 0, 0),
     "1": (0, 0, 0),
     "": (0, 0, 0),
 }

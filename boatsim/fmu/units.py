@@ -24,6 +24,7 @@ NAMED: Mapping[str, BaseUnit] = {
     "rad": BaseUnit({"rad": 1}),
     "N": BaseUnit({"kg": 1, "m": 1, "s": -2}),
     "V": BaseUnit({"kg": 1, "m": 2, "s": -3, "A": -1}),
+    "A": BaseUnit({"A": 1}),
     "1": BaseUnit({}),
     "us": BaseUnit({"s": 1}, 1e-6),
     "rpm": BaseUnit({"rad": 1, "s": -1}, 2.0 * pi / 60.0),
@@ -43,6 +44,7 @@ SUFFIXES = {
     "s": "s",
     "us": "us",
     "V": "V",
+    "A": "A",
 }
 FACTOR = re.compile(r"([A-Za-z]+|1)(?:\^(\d+))?")
 

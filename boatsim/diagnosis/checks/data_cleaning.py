@@ -1,8 +1,8 @@
 """Corrections that a diagnosis applies to a log automatically, and the findings about them.
 
 Repeated values and outliers are ignored, positions that contradict the velocities and poses that
-had queued are dropped, positions that were logged late are moved, outliers of voltages are
-interpolated, and rudder signs are aligned with the vessel.
+had queued are dropped, positions that were logged late are moved, outliers of voltages and
+currents of the supply are interpolated, and rudder signs are aligned with the vessel.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK
+from boatsim.diagnosis.checks.current_outliers import CURRENT_OUTLIERS
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.interpolated_samples import (
     INTERPOLATED,
@@ -29,8 +30,8 @@ from boatsim.diagnosis.checks.repeated_values import (
     drop_repeated_values,
 )
 from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
-from boatsim.diagnosis.checks.voltage_outliers import OUTLIERS as VOLTAGE_OUTLIERS
-from boatsim.diagnosis.checks.voltage_outliers import replace_voltage_outliers
+from boatsim.diagnosis.checks.supply_outliers import replace_supply_outliers
+from boatsim.diagnosis.checks.voltage_outliers import VOLTAGE_OUTLIERS
 from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.physics.vessel import Vessel
@@ -48,6 +49,7 @@ FINDING_OF_REMARK = {
     QUEUED: "queued_messages",
     "jump away and return": "outliers",
     VOLTAGE_OUTLIERS: "voltage_outliers",
+    CURRENT_OUTLIERS: "supply_current_outliers",
     "off the course of the following fixes": "begins_astray",
     "were rotated with the heading": "positions_turned",
     "turns the hull to the other side": "rudder_sense",
@@ -66,8 +68,9 @@ def prepare_recording(
 ) -> Recording:
     """Return the usable part of a raw recording with consistent angles, rudder signs and positions.
 
-    Wrapped angles are unwrapped, outliers of measured voltages are interpolated, rudder angles get
-    the sign convention of the vessel, and positions that were rotated with the boat are dropped.
+    Wrapped angles are unwrapped, outliers of measured voltages and currents are interpolated,
+    rudder angles get the sign convention of the vessel, and positions that were rotated with the
+    boat are dropped.
 
     Args:
         recording: The recording as read.
@@ -78,7 +81,7 @@ def prepare_recording(
         The prepared recording; its remarks list each correction.
     """
     unwrapped = unwrap_directions(recording.used(), vessel)
-    powered = replace_voltage_outliers(unwrapped, vessel, config)
+    powered = replace_supply_outliers(unwrapped, vessel, config)
     return drop_rotated_positions(correct_rudder_sense(powered, vessel, config), config)
 
 

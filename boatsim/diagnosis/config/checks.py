@@ -89,6 +89,29 @@ class ChecksConfig:
         0.0,
         0.5,
     )
+    current_rows: int = setting(
+        5,
+        "count",
+        "Readings of an electric current, itself included, with whose median a reading is "
+        "compared. A fault of an instrument lasts one or two rows, a burst of thrust longer.",
+        3,
+    )
+    current_largest_jump: float = setting(
+        1.0,
+        "1",
+        "Difference of a reading of a current from the median around it, over the largest of "
+        "these medians, above which it is an outlier. The current of a motor that starts is "
+        "higher than its largest steady one for less than a row, and by less than this.",
+        0.1,
+    )
+    current_outlier_share: float = setting(
+        0.2,
+        "1",
+        "Share of the readings of a current up to which they are outliers, for the same reason as "
+        "with voltages.",
+        0.0,
+        0.5,
+    )
     push_threshold: float = setting(
         6.0,
         "sd",

@@ -73,8 +73,12 @@ MEANINGS = {
     "acceleration": (
         "beschleunigung accélération aceleración accelerazione akselerasjon versnelling"
     ),
-    "current": "strömung corriente corrente strøm stroming",
+    "current": (
+        "strömung corriente corrente strøm ström stroming strom stromstärke stroom stroomsterkte "
+        "courant"
+    ),
     "voltage": "spannung voltaje tensione spenning",
+    "battery": "batterie akku batteria batería bateria batteri accu",
     "temperature": "temperatur température temperatura temperatuur",
     "port": (
         "backbord backbords bâbord babor babordo bakboord bagbord babord links linker linke gauche "
@@ -139,7 +143,7 @@ NEUTRAL = set(
     "sobre el sur au sul nav gps gnss imu wahr vrai vero verdadero sann waar magnetisch magnetique "
     "magnetico rpm boat boot bateau barco barca skip schiff bb sb stb bd tb ps".split()
 )
-ELECTRICAL = {"voltage", "current", "temperature", "motor", "propeller"}
+ELECTRICAL = {"voltage", "current", "battery", "temperature", "motor", "propeller"}
 
 
 def plain_name(name: str) -> str:

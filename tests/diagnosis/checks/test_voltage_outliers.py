@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings, prepare_recording
-from boatsim.diagnosis.checks.voltage_outliers import replace_voltage_outliers, voltage_outliers
+from boatsim.diagnosis.checks.supply_outliers import replace_supply_outliers
+from boatsim.diagnosis.checks.voltage_outliers import voltage_outliers
 from boatsim.physics.vessel import load_vessel
 from boatsim.physics.vessel.schema import MeasuredChannel
 from boatsim.recordings.table import Recording
@@ -47,4 +48,4 @@ def test_other_columns_in_volts_are_not_changed() -> None:
     run = recording(VOLTS)
     wrong = np.where(np.arange(len(T)) == 50, 99.0, 5.0)
     run = replace(run, signals={**run.signals, "sensed_V": wrong})
-    assert replace_voltage_outliers(run, BOAT)["sensed_V"] is wrong
+    assert replace_supply_outliers(run, BOAT)["sensed_V"] is wrong

@@ -143,7 +143,7 @@ RESTS = {  # effects that are not always there
     "ventilation",  # deep below the surface
     "thruster_hull_interaction",  # with the race directed away from the hull
 }
-SI = {"rad", "m", "kg", "s", "N", "V"}
+SI = {"rad", "m", "kg", "s", "N", "V", "A"}
 OTTER = Path(__file__).parents[3] / "models" / "otter"
 CURRENT = Path(__file__).parents[2] / "data" / "current.csv"
 COEFFICIENTS, MESH = OTTER / "hydrodynamics", OTTER / "hull.obj"

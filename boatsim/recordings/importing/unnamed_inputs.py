@@ -1,0 +1,80 @@
+"""Comments of a proposed map on inputs that a log has and the vessel's file does not name."""
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from boatsim.files import toml_key, toml_value
+from boatsim.recordings.expression import parse
+from boatsim.recordings.importing.log import Log
+from boatsim.recordings.importing.measured_lines import (
+    SUPPLY,
+    InputSignal,
+    lines_of_input,
+    most_probable_first,
+)
+from boatsim.recordings.importing.supply_currents import supply_current_inputs
+from boatsim.recordings.importing.voltages import voltage_inputs
+from boatsim.recordings.notes import unit_of
+
+HEADING = (
+    "# Measured on board, but not named in [measured] of the vessel. To use it, add to its "
+    "vessel.toml:"
+)
+LARGE = 90.0  # [%] percentile of a current that is proposed as the nominal one
+
+
+class NewInput(NamedTuple):
+    """An input that a vessel's file may name.
+
+    Attributes:
+        column: Its column.
+        about: Description of the input.
+        found: Signals of the log that may be it.
+        percentile: Percentile of the readings that is proposed as the nominal value [%].
+    """
+
+    column: str
+    about: str
+    found: Sequence[InputSignal]
+    percentile: float
+
+
+def unnamed_input_lines(measured: Collection[str], log: Log) -> str:
+    """Return comments that state what to add to a vessel's file and to the map.
+
+    Args:
+        measured: Measured quantities that the vessel's file names.
+        log: The log.
+
+    Returns:
+        The lines; "" if the log has no further input.
+    """
+    units = {unit_of(name) for name in measured}
+    new = (
+        NewInput("battery_V", "voltage of the supply", voltage_inputs(log), 50.0),
+        NewInput("battery_A", "current of the supply", supply_current_inputs(log), LARGE),
+    )
+    tables, lines = "", ""
+    for one in new:
+        if unit_of(one.column) in units or not one.found:
+            continue
+        text = lines_of_input(one.column, one.about, one.found, SUPPLY)
+        lines += "".join(f"# {line}\n" for line in text.splitlines())
+        nominal = _nominal(one, log)
+        tables += (
+            f"# {toml_key(one.column)} = {{ neutral = {nominal:.3g}, about = "
+            f"{toml_value(one.about)} }}  # neutral: the nominal value\n"
+        )
+    if not lines:
+        return ""
+    return f"\n{HEADING}\n# [measured]\n{tables}# and use these lines here:\n{lines}"
+
+
+def _nominal(one: NewInput, log: Log) -> float:
+    """A percentile of the readings of the most probable signal, in the unit of the input."""
+    best = most_probable_first(one.column, one.found, SUPPLY)[0]
+    expression = parse(best.expression, log.signals.keys())
+    values = expression.convert(log.signals[expression.signal].values)
+    return float(np.nanpercentile(values, one.percentile))
