@@ -107,7 +107,7 @@ def ranked(
     return select_and_rank_candidates(problem, tuple(e.name for e in effects))
 
 
-def platform_of_three_drives() -> Vessel:
+def platform_of_three_drives(measured: Mapping[str, object] | None = None) -> Vessel:
     """A platform with a fixed drive athwart its bow and two at its stern, all ahead and astern."""
     places = {"bow": (0.6, 0.0, 1.5708), "port": (-0.6, -0.3, 0.0), "starboard": (-0.6, 0.3, 0.0)}
     effects: list[dict[str, object]] = [
@@ -116,7 +116,8 @@ def platform_of_three_drives() -> Vessel:
     for drive, (x, y, angle) in places.items():
         on = {"thrust": f"{drive}_N", "angle": angle}
         effects.append({"use": "thruster", "name": drive, "on": on, "x": x, "y": y})
-    return _platform(effects, {f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places})
+    channels = {f"{drive}_N": {"low": -8.0, "high": 8.0} for drive in places}
+    return _platform(effects, channels, measured)
 
 
 def platform_of_turning_drives(turning: Sequence[str] = ("bow", "port", "starboard")) -> Vessel:
@@ -136,7 +137,11 @@ def platform_of_turning_drives(turning: Sequence[str] = ("bow", "port", "starboa
     return _platform(effects, channels)
 
 
-def _platform(effects: Sequence[Mapping[str, object]], channels: Mapping[str, object]) -> Vessel:
+def _platform(
+    effects: Sequence[Mapping[str, object]],
+    channels: Mapping[str, object],
+    measured: Mapping[str, object] | None = None,
+) -> Vessel:
     """A platform of 30 kg in a basin, which its drives move in surge, sway and yaw."""
     return Vessel.from_effects(
         name="platform",
@@ -147,5 +152,6 @@ def _platform(effects: Sequence[Mapping[str, object]], channels: Mapping[str, ob
         body={"mass": 30.0, "roll_inertia": 2.0, "yaw_inertia": 4.0},
         effects=effects,
         channels=channels,
+        measured=measured or {},
         diagnosis={"facts": {"still_water": True, "indoors": True}},
     )

@@ -259,8 +259,13 @@ def _sources_of_single_ones(
     if kind.jointly:
         yield _Source({"use": name}, kind, requested)
         return
+    measured = _measured_sources(kind, vessel)
+    fed_by = dict(zip(measured.get("on", ()), measured.get("fed_by", ()), strict=True))
     for one in single_subjects(kind, vessel):
-        yield _Source({"use": name, "name": f"{name}_{one}", "on": [one]}, kind, requested)
+        table: dict[str, object] = {"use": name, "name": f"{name}_{one}", "on": [one]}
+        if one in fed_by:
+            table["fed_by"] = [fed_by[one]]
+        yield _Source(table, kind, requested)
 
 
 def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> bool:
@@ -269,7 +274,7 @@ def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> 
     return several and not has_single_candidates(kind, vessel, fewest)
 
 
-def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, object]:
+def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, list[str]]:
     """Settings that bind a channel effect to the measured quantities that feed it, if it needs any.
 
     They are empty where the vessel measures none that matches.
@@ -298,6 +303,8 @@ def single_subjects(kind: type[Effect], vessel: Vessel) -> list[str]:
         return []
     if issubclass(kind, ChannelEffect):
         return list(vessel.target_actuators(instantiate_neutral_effect(kind)))
+    if kind.per_instance_of:  # also at effects that can stand for it, as propellers for thrusters
+        return [effect.name for effect in vessel.effects_of_type(kind.once_per)]
     return vessel.names_of(kind.once_per)
 
 

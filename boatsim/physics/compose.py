@@ -114,16 +114,18 @@ class Composition:
         if not type(effect).per_instance_of:
             signals = (self._signals_text(number),) if type(effect).roles else ()
             return [LawCall(number, own, signals + held)]
-        carriers = []
-        for carrier in self.vessel.host_effects(effect):
+        carriers = {}
+        for carrier in self.vessel.effects_of_type(type(effect).per_instance_of):
             i = self.effects.index(carrier)
             carried = self._carrier_signals(i, type(effect).per_instance_of)
-            carriers.append((carried, self._parameters_text(i)))
+            carriers[carrier.name] = carried, self._parameters_text(i)
+        hosts = [carrier.name for carrier in self.vessel.host_effects(effect)]
+        influencing = list(carriers) if type(effect).influenced_by_all else hosts
         calls = []
-        for k, carrier_text in enumerate(carriers):
-            others = carriers[:k] + carriers[k + 1 :]
-            total = self._influence_text(number, own, carrier_text, others)
-            calls.append(LawCall(number, own, (*carrier_text, *held, *total)))
+        for name in hosts:
+            others = [carriers[other] for other in influencing if other != name]
+            total = self._influence_text(number, own, carriers[name], others)
+            calls.append(LawCall(number, own, (*carriers[name], *held, *total)))
         return calls
 
     def _influence_text(

@@ -72,6 +72,11 @@ def hull_loss(thrust: Array, angle: Array, loss: float) -> Array:
     return thrust * np.where(cosine > 0.0, 1.0 - loss * cosine**2, 1.0)
 
 
+def hull_loss_of_port(thrust: Array, angle: Array, loss: float) -> Array:
+    """Thrust of drives of which only the race of the port one loses by the hull."""
+    return np.where(np.arange(len(thrust)) == 1, hull_loss(thrust, angle, loss), thrust)
+
+
 def race_loss(thrust: Array, angle: Array, size: float) -> Array:
     """Thrust of drives in each other's races, with the published ratio in its published form."""
     places = [complex(x, y) for x, y in PLACES.values()]
@@ -90,10 +95,17 @@ def race_loss(thrust: Array, angle: Array, size: float) -> Array:
     return left
 
 
+def race_loss_of_starboard(thrust: Array, angle: Array, size: float) -> Array:
+    """Thrust of drives of which only the starboard one loses in the races of the others."""
+    return np.where(np.arange(len(thrust)) == 2, race_loss(thrust, angle, size), thrust)
+
+
 LOSSES: dict[str, tuple[Callable[[Array, Array, float], Array], str, float]] = {
     "thruster_interaction": (race_loss, "size", 1.0),
     "shared_supply": (shared_loss, "loss", 0.25),
     "thruster_hull_interaction": (hull_loss, "loss", 0.2),
+    "drive_interaction_starboard": (race_loss_of_starboard, "size", 1.0),
+    "drive_hull_interaction_port": (hull_loss_of_port, "loss", 0.3),
 }
 
 
@@ -190,7 +202,8 @@ def problem_of(name: str, effect: str) -> tuple[Problem, tuple[str, ...]]:
     """The recordings of a vessel with one effect, and the candidates that are tested."""
     boat = platform() if name == "platform" else load_vessel(name)
     recordings = [SAIL[name](seed, effect) for seed in (1, 2)]
-    drives = (f"drive_gain_error_{drive}" for drive in boat.names_of("thruster"))
+    own = ("drive_gain_error", "drive_hull_interaction", "drive_interaction")
+    drives = [f"{effect}_{drive}" for effect in own for drive in boat.names_of("thruster")]
     tested = (*EFFECTS, *RIVALS, *drives)
     effects = [e for e in candidate_library(boat).compiled_effects if e.name in tested]
     program = Program(boat, effects)
@@ -206,6 +219,8 @@ def ranked(name: str, effect: str) -> Ranking:
 
 CASES = [
     *(("platform", effect) for effect in EFFECTS),
+    ("platform", "drive_interaction_starboard"),
+    ("platform", "drive_hull_interaction_port"),
     long("osv", "thruster_interaction"),
     long("osv", "shared_supply"),
     long("osv", "thruster_hull_interaction"),

@@ -356,7 +356,8 @@ class CandidateSets:
             return None
         vessel, drive = self.problem.program.vessel, next(iter(effect.on))
         if (mounted := vessel.effect(drive)) is not None:
-            drive = str(vessel.bindings(mounted).get("thrust", drive))
+            bound = vessel.bindings(mounted)
+            drive = str(bound.get("thrust", bound.get("shaft", drive)))
         return drive, group_of(name)
 
     @property

@@ -136,3 +136,23 @@ ShaftWithVoltage = preset_effect(
         },
     },
 )
+
+
+DriveLossWithVoltage = preset_effect(
+    ThrustWithVoltage,
+    "DriveLossWithVoltage",
+    words="the thrust or shaft rate of one drive decreases with the voltage of its supply, unlike "
+    "that of the others",
+    shown_by="the same commands of this drive alone with a full and with an empty battery",
+    acts_on="thrust|shaft",
+    once_per="actuator",
+    of_all=("thrust_with_voltage", "shaft_with_voltage"),
+    frees={
+        "exponent": {
+            "low": -5.0,  # where all drives of the vessel's file depend more on it than this one
+            "words": "k: power of the voltage, beyond that of the vessel's file; 0: this drive "
+            "does not depend on it otherwise than there",
+            "spread": 2.0,
+        },
+    },
+)

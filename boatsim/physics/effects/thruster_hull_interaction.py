@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Boat, Force, Wrench, param
+from boatsim.physics.base import Boat, Force, Wrench, param, preset_effect
 from boatsim.physics.drive_ranges import drive_ranges
 from boatsim.physics.effects.thruster import thrust_wrench_at_mount
 
@@ -95,3 +95,19 @@ class ThrusterHullInteraction(Force):
         if all(drive.sweep <= LEAST_SWEEP for drive in drive_ranges(self, vessel)):
             return "no drive that turns more than 60 degrees to either side"
         return ""
+
+
+DriveHullInteraction = preset_effect(
+    ThrusterHullInteraction,
+    "DriveHullInteraction",
+    words="one drive alone gives less thrust where its race strikes the hull",
+    shown_by="this drive turned through all directions at constant thrust",
+    once_per="thruster",
+    of_all=("thruster_hull_interaction",),
+    frees={
+        "loss": {
+            "words": "share of the thrust of this drive lost with the race directed at the hull's "
+            "middle",
+        },
+    },
+)

@@ -1,12 +1,12 @@
 """Thruster interaction: a drive in the race of another one gives less thrust."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, exp, hypot, log, pi
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Boat, Force, Wrench, param
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, preset_effect
 from boatsim.physics.debugging import python_function
 from boatsim.physics.drive_ranges import DriveRange, drive_ranges
 from boatsim.physics.effects.thruster import thrust_wrench_at_mount
@@ -150,12 +150,18 @@ class ThrusterInteraction(Force):
         Args:
             vessel: Vessel on which the effect acts.
         """
-        drives = drive_ranges(self, vessel)
-        for drive in drives:
-            for other in drives:
-                if drive is not other and largest_loss(drive, other, self.diameter) >= LEAST_LOSS:
+        racing = replace(self, on=()) if type(self).influenced_by_all else self
+        for name, drive in _named_ranges(self, vessel):
+            for other_name, other in _named_ranges(racing, vessel):
+                if name != other_name and largest_loss(drive, other, self.diameter) >= LEAST_LOSS:
                     return ""
         return "no drive that can work in the race of another one"
+
+
+def _named_ranges(effect: Force, vessel: Boat) -> list[tuple[str, DriveRange]]:
+    """Names and ranges of the drives on which an effect acts."""
+    names = [drive.name for drive in vessel.host_effects(effect)]
+    return list(zip(names, drive_ranges(effect, vessel), strict=True))
 
 
 def largest_loss(drive: DriveRange, other: DriveRange, diameter: float) -> float:
@@ -174,3 +180,20 @@ def largest_loss(drive: DriveRange, other: DriveRange, diameter: float) -> float
         ratio: float = python_function(thrust_ratio)(hypot(x, y) / diameter, angle)
         most = max(most, 1.0 - ratio)
     return most
+
+
+DriveInteraction = preset_effect(
+    ThrusterInteraction,
+    "DriveInteraction",
+    words="one drive alone gives less thrust in the race of another drive",
+    shown_by="this drive alone, then with the race of another one turned on it",
+    once_per="thruster",
+    of_all=("thruster_interaction",),
+    influenced_by_all=True,
+    frees={
+        "size": {
+            "words": "exponent of the published ratio for this drive; 1 as published, 0 no "
+            "interaction",
+        },
+    },
+)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.errors import BadInput
-from boatsim.physics.base import UNSET, Array, Boat, Force, Wrench, param
+from boatsim.physics.base import UNSET, Array, Boat, Force, Wrench, param, preset_effect
 from boatsim.physics.effects.thruster import thrust_wrench_at_mount
 from boatsim.physics.waves.elevation import elevation_at_hull
 from boatsim.physics.waves.field import WaveField
@@ -156,3 +156,18 @@ class Ventilation(SeaParameters, Force):
                 "allowed are mounts with z > 0, or a shaft_depth"
             )
         return {"shaft_depth": depth, "radius": SLOPE * least}
+
+
+DriveVentilation = preset_effect(
+    Ventilation,
+    "DriveVentilation",
+    words="one propeller alone loses thrust when it comes near the surface",
+    shown_by="constant thrust of this drive alone while the boat pitches and heaves on still water",
+    once_per="thruster",
+    of_all=("ventilation",),
+    frees={
+        "loss": {
+            "words": "loss of thrust of this propeller over the published one",
+        },
+    },
+)

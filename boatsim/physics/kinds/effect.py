@@ -121,6 +121,8 @@ class Effect(CheckedParameters):
     sees_table: ClassVar[bool] = False
     # effect on each of whose instances it acts: its law takes their signals and parameters
     per_instance_of: ClassVar[str] = ""
+    # with `influence`: instances in `on` are influenced by all others, not only by those in `on`
+    influenced_by_all: ClassVar[bool] = False
 
     # settings that are paths; relative ones start at the folder of the file that contains them
     paths: ClassVar[tuple[str, ...]] = ()

@@ -136,6 +136,8 @@ RESTS = {  # effects that are not always there
     "drag_growth",  # at its begin
     "dragged_propeller",  # with the way
     "drive_fade",  # at the begin of a run
+    "drive_hull_interaction",  # with the race directed away from the hull
+    "drive_ventilation",  # deep below the surface
     "push",  # before its time and after
     "quay",  # away from the wall
     "rudder_race",  # of a propeller that backs

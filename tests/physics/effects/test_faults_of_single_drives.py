@@ -79,6 +79,51 @@ def test_a_loss_with_the_speed_reduces_the_speed_under_one_drive() -> None:
     assert speed == pytest.approx(2.0 * 4.0 / (6.0 + 0.5 * 4.0), rel=1e-5)
 
 
+@pytest.mark.parametrize(("direction", "share"), [(0.0, 0.7), (np.pi, 1.0)])
+def test_a_race_on_the_hull_reduces_the_thrust_of_its_drive_alone(
+    direction: float, share: float
+) -> None:
+    """The drive at the bow pushes astern or ahead; ahead its race is directed at the hull."""
+    boat = platform_of_turning_drives()
+    table = {"use": "drive_hull_interaction", "loss": 0.3, "on": ["bow"]}
+    others = {"port_N": 4.0, "starboard_N": 3.0, "port_rad": np.pi, "starboard_rad": np.pi}
+    commands = {**others, "bow_rad": direction}
+    found = final_state(boat.with_effect(table), {**commands, "bow_N": 5.0})
+    assert found == pytest.approx(final_state(boat, {**commands, "bow_N": share * 5.0}))
+
+
+def test_a_race_on_the_hull_is_a_candidate_for_each_drive_that_turns() -> None:
+    library = candidate_library(platform_of_turning_drives(("port", "starboard")))
+    names = {name for name in library.tested_names if "drive_hull_interaction" in name}
+    assert names == {"drive_hull_interaction_port", "drive_hull_interaction_starboard"}
+    assert "60 degrees" in library.inapplicable["drive_hull_interaction_bow"]
+    assert "drive_hull_interaction" in candidate_library(vessel.load_vessel("mariner")).inapplicable
+
+
+def test_races_of_all_others_reduce_the_thrust_of_one_drive_alone() -> None:
+    """Where all drives push alike, the published ratios of both races multiply."""
+    boat = replace(platform_of_turning_drives(), dof=("surge",))
+    table = {"use": "drive_interaction", "size": 1.0, "diameter": 0.1, "on": ["starboard"]}
+    push = {"bow_N": 4.0, "port_N": 4.0, "starboard_N": 4.0}
+    # the races of both other drives are directed at the starboard one, which pushes ahead
+    turned = {"bow_rad": float(np.arctan2(-0.3, 1.2)), "port_rad": -0.5 * np.pi}
+    share = 1.0
+    for distance in (float(np.hypot(1.2, 0.3)), 0.6):
+        share *= 1.0 - 0.75 ** ((distance / 0.1) ** (2.0 / 3.0))
+    assert share < 0.9
+    commands = {**turned, "starboard_rad": 0.0}
+    found = final_state(boat.with_effect(table), {**push, **commands})
+    given = final_state(boat, {**push, **commands, "starboard_N": share * 4.0})
+    assert found == pytest.approx(given)
+
+
+def test_a_drive_in_a_race_is_a_candidate_where_another_one_can_be_turned_on_it() -> None:
+    library = candidate_library(platform_of_turning_drives(("bow",)))
+    names = {name for name in library.tested_names if "drive_interaction" in name}
+    assert names == {"drive_interaction_port", "drive_interaction_starboard"}
+    assert "in the race of another" in library.inapplicable["drive_interaction_bow"]
+
+
 # ---- the direction of one drive
 
 

@@ -21,6 +21,7 @@ from boatsim.physics.effects.ventilation import Ventilation, thrust_diminution
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.open_water import OpenWater
+from boatsim.simulate.stepper import State
 
 OTTER = Path(__file__).parents[3] / "models" / "otter"
 
@@ -267,3 +268,99 @@ def test_no_loss_is_found_in_waves_of_which_only_the_motion_is_recorded(
         recordings.append(sailed(truth, drives, seed, NOISE))
     tested = ("ventilation", "thrust_gain_error", "wave_forcing")
     assert "ventilation" not in [one.name for one in ranked(otter, tested, *recordings).named]
+
+
+# ---- one propeller of three
+
+
+SIDES = {"port": -0.25, "middle": 0.0, "starboard": 0.25}  # to starboard [m]
+
+
+def craft_of_three() -> Vessel:
+    """A craft that surges, heaves, pitches and yaws, with three propellers at its stern."""
+    effects: list[dict[str, object]] = [
+        {"use": "linear_damping", "surge": 15.0, "heave": 200.0, "pitch": 30.0, "yaw": 8.0},
+        {"use": "hydrostatics", "heave": 600.0, "pitch": 80.0, "roll": 80.0},
+        {"use": "applied_load", "on": {"force": "winch_N"}, "heave": 1.0, "x": -0.4},
+    ]
+    channels = {"winch_N": {"low": -300.0, "high": 300.0}}
+    for drive, y in SIDES.items():
+        on = {"thrust": f"{drive}_N"}
+        effects.append({"use": "thruster", "name": drive, "on": on, "x": -0.7, "y": y, "z": 0.12})
+        channels[f"{drive}_N"] = {"low": -20.0, "high": 20.0}
+    return Vessel.from_effects(
+        name="platform",
+        dof=("surge", "heave", "pitch", "yaw"),
+        length=1.5,
+        beam=0.6,
+        draught=0.15,
+        body={"mass": 30.0, "roll_inertia": 1.0, "pitch_inertia": 5.0, "yaw_inertia": 5.0},
+        effects=effects,
+        channels=channels,
+        diagnosis={"facts": {"still_water": True, "no_waves": True, "indoors": True}},
+    )
+
+
+def ranking_of_three(*added: dict[str, Any]) -> Any:
+    """What two recordings say of the craft with effects."""
+    truth = craft_of_three()
+    for table in added:
+        truth = truth.with_effect(table)
+    runs = []
+    for seed in (1, 2):
+        rng = np.random.default_rng(seed)
+        levels = np.repeat(rng.uniform(0.0, 10.0, (15, 3)), 20, axis=0)
+        orders = {f"{drive}_N": levels[:, k] for k, drive in enumerate(SIDES)}
+        orders["winch_N"] = pulls(rng, 300, 50.0)
+        runs.append(sailed(truth, orders, seed, {name: NOISE[name] for name in THREE}))
+    single = ("drive_ventilation", "drive_gain_error", "drive_loss_with_speed")
+    own = [f"{effect}_{drive}" for effect in single for drive in SIDES]
+    return ranked(craft_of_three(), (*RIVALS, *own), *runs)
+
+
+THREE = ("x", "y", "z", "theta", "psi")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("fault", "name"),
+    [
+        ({"use": "drive_ventilation", "on": ["port"]}, "drive_ventilation_port"),
+        long({"use": "ventilation"}, "ventilation"),
+    ],
+)
+def test_one_propeller_or_all_that_ventilate_are_named_with_the_loss(
+    fault: dict[str, Any], name: str
+) -> None:
+    ranking = ranking_of_three({**fault, "loss": 1.0})
+    # in heave the sampling of the winch may pass for damping
+    faults = [one.name for one in ranking.named if one.name != "quadratic_damping"]
+    assert faults == [name]
+    value, sd = ranking.best.value(name, "loss")
+    assert abs(value - 1.0) < max(4.0 * sd, 0.1)
+    assert sd < 0.2
+
+
+@pytest.mark.slow
+def test_no_propeller_ventilates_where_none_does() -> None:
+    assert not [one.name for one in ranking_of_three().named if "ventilation" in one.name]
+
+
+def test_one_propeller_loses_what_all_would_lose_at_its_place() -> None:
+    """A raised stern costs the named propeller its share, and the others nothing."""
+    craft = craft_of_three()
+    lost = {}
+    for table in ({"use": "ventilation"}, {"use": "drive_ventilation", "on": ["port"]}):
+        boat = craft.with_effect({**table, "loss": 1.0})
+        engine = OpenWater(boat, STEP)
+        engine.reset(State(z=-0.1), {"port_N": 10.0, "starboard_N": 10.0})
+        engine.advance(5)
+        lost[table["use"]] = engine.state
+    assert abs(lost["ventilation"].r) < 1e-9
+    assert lost["drive_ventilation"].r < -0.001
+
+
+def test_each_propeller_is_a_candidate_of_its_own() -> None:
+    tested = candidate_library(craft_of_three()).tested_names
+    assert {f"drive_ventilation_{drive}" for drive in SIDES} <= set(tested)
+    assert "drive_ventilation" in candidate_library(vessel.load_vessel("otter")).tried_last
