@@ -143,7 +143,7 @@ def candidate_library(
         if one_of_few or (kind.confounded_with and not source.requested):
             excluded[name] = reason or _reason_not_tested_first(kind, name, one_of_few)
             if not reason and (one_of_few or kind.tried_last):
-                last[name] = kind.confounded_with
+                last[name] = kind.confounded_with or kind.imitated_by
             continue
         excluded.pop(name, None)
         last.pop(name, None)

@@ -13,7 +13,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
-LAG, PAUSE = 0.8, 0.6  # [s]
+LAG, PAUSE, DEAD_TIME = 0.8, 0.6, 0.6  # [s]
 
 
 def lagged(orders: Array) -> Array:
@@ -97,3 +97,21 @@ def test_one_drive_that_is_weak_astern_is_named_with_its_factor(tmp_path: Path) 
 def test_a_lag_of_both_drives_is_not_taken_for_faults_of_single_ones(tmp_path: Path) -> None:
     answer = diagnosed(runs(lagged, 0, 1), tmp_path, "trial_boat")
     named(answer, "thrust_lag", {"time_constant_s": LAG})
+
+
+def late(orders: Array) -> Array:
+    """Orders (T,) after a dead time."""
+    rows = round(DEAD_TIME / STEP)
+    return np.concatenate([np.repeat(orders[:1], rows), orders[:-rows]])
+
+
+@pytest.mark.slow
+def test_late_directions_of_both_drives_are_one_dead_time_and_no_lag(tmp_path: Path) -> None:
+    answer = diagnosed(runs(late, 2, 3), tmp_path, "trial_boat")
+    named(answer, "steering_delay", {"delay_s": DEAD_TIME})
+
+
+@pytest.mark.slow
+def test_a_lag_of_both_directions_is_that_of_the_steering(tmp_path: Path) -> None:
+    answer = diagnosed(runs(lagged, 2, 3), tmp_path, "trial_boat")
+    named(answer, "steering_rate_limit", {"lag_s": LAG})  # a rate limit with a lag

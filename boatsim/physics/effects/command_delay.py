@@ -231,6 +231,7 @@ SteeringDelay = preset_effect(
     acts_on="angle",
     once_per="actuator",
     jointly=True,
+    imitated_by=("steering_rate_limit",),
     ruled_out_by={"steering_measured": (True,)},
     frees={
         "delay": {

@@ -106,6 +106,8 @@ class Effect(CheckedParameters):
     confounded_with: ClassVar[tuple[str, ...]] = ()
     # a candidate also where the others leave a force unexplained, or include a confounded one
     tried_last: ClassVar[bool] = False
+    # effects that are selected in its place where it is not tested; it is then tried last
+    imitated_by: ClassVar[tuple[str, ...]] = ()
     # a random process: the filter tracks it, a simulation without data cannot
     random: ClassVar[bool] = False
     alone: ClassVar[bool] = False  # no candidate for a vessel that has one already
