@@ -73,6 +73,28 @@ def shifted_columns(
     return rows, shifted
 
 
+def shifted_commands(
+    t: Array, signals: Mapping[str, Array], latency: Mapping[str, float]
+) -> tuple[Array, dict[str, Array]]:
+    """Return commands at their own times that are moved to the times at which they were in force.
+
+    Args:
+        t: Times (K,) [s]; each command is in force until the next.
+        signals: Command -> values (K,).
+        latency: Column -> delay of its values [s].
+
+    Returns:
+        Times (M,) [s] of all changes, and values (M,).
+    """
+    own = {name: t - latency.get(name, 0.0) for name in signals}
+    times = np.unique(np.concatenate([t[:0], *own.values()]))
+    shifted: dict[str, Array] = {}
+    for name, values in signals.items():
+        last = np.searchsorted(own[name], times, side="right") - 1
+        shifted[name] = values[np.maximum(last, 0)]
+    return times, shifted
+
+
 def _rows(t: Array, moved: Sequence[Samples]) -> tuple[Array, float]:
     """Times (N,) of the rows [s], and the largest distance of a sample from its row [s]."""
     step = float(np.median(np.diff(t)))
