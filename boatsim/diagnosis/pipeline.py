@@ -30,6 +30,7 @@ from boatsim.diagnosis.answer.results import collect_findings
 from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.answer.stages import Stages
 from boatsim.diagnosis.checks.command_clock import (
+    candidates_besides_clocks,
     check_command_clock,
     recordings_with_one_clock,
 )
@@ -254,6 +255,8 @@ def _fit_and_select(
         findings = (*findings, *other_clocks)
         loaded = recordings_with_one_clock(loaded, other_clocks)
         question = set_up_estimation_problem(loaded, question.problem.config)
+        names = candidates_besides_clocks(question.candidates, loaded, other_clocks)
+        question = replace(question, candidates=names)
         base = fit_baseline_models(question)
     selection = select_candidates(question, base, loaded, report_part_of(report, *SELECTING))
     given = loaded.findings

@@ -4,14 +4,16 @@ No value is interpolated: each sample keeps its value and gets an earlier time. 
 that time the recording gets one more row, in which the other poses and rates are empty.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.resample import (
+    SAME_TIME,
     Samples,
     clean_samples,
     mean_held_values,
@@ -64,6 +66,7 @@ def shifted_columns(
     # another column with empty rows may end early, as where the hull leaves the view of a camera
     motion = [samples for name, samples in measured.items() if name in (*POSE, *RATES)]
     rows = _common_rows(rows, [*moved, *motion, *held.values()], near)
+    rows = rows[_has_begun(rows, held.values())]  # a command is not known before its first sample
     shifted: dict[str, Array] = {}
     for name in signals:
         if name in held:
@@ -71,6 +74,12 @@ def shifted_columns(
         else:
             shifted[name] = nearest_samples(rows, measured[name], near)
     return rows, shifted
+
+
+def _has_begun(rows: Array, held: Iterable[Samples]) -> NDArray[np.bool_]:
+    """Whether all held signals have a value in each row (N,)."""
+    begin = max((float(samples.t[0]) for samples in held if len(samples.t)), default=-np.inf)
+    return np.asarray(rows >= begin - SAME_TIME)
 
 
 def shifted_commands(

@@ -20,12 +20,7 @@ from boatsim.diagnosis.checks.command_delays import (
     Response,
     with_response,
 )
-from boatsim.diagnosis.checks.drive_delays import (
-    best_drive_rival,
-    common_lag,
-    likeliest_with_lag,
-    mean_delay,
-)
+from boatsim.diagnosis.checks.drive_delays import best_drive_rival, common_lag
 from boatsim.diagnosis.checks.finding import (
     Finding,
     apply_corrections,
@@ -39,9 +34,11 @@ from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import fit_baseline
 from boatsim.errors import BadInput
+from boatsim.physics.groups import group_of, without_group
 from boatsim.recordings.table import Recording
 from boatsim.view.formatting import format_odds
 
+CLOCK_EFFECTS = ("clock_offset", "command_delay")  # delays of all sensors or of all commands
 HEADING = ("psi_rad", "r_radps")
 Delays = Mapping[str, Delay]  # by file
 
@@ -142,6 +139,30 @@ def recordings_with_one_clock(
     return replace(loaded, fitted=corrected(loaded.fitted), held_out=corrected(loaded.held_out))
 
 
+def candidates_besides_clocks(
+    names: Sequence[str], loaded: LoadedRecordings, findings: Sequence[Finding]
+) -> tuple[str, ...]:
+    """Return candidate effects without delays of the groups of corrected recordings.
+
+    What the correction leaves of a delay, less than its uncertainty, is no second cause.
+
+    Args:
+        names: Names of candidate effects.
+        loaded: The recordings.
+        findings: Findings "command_clock" about them.
+    """
+    runs = {finding.run for finding in findings}
+    groups = set[str]()
+    for recording in (*loaded.fitted, *loaded.held_out):
+        if recording.origin in runs:
+            groups.update(recording.notes.groups)
+    kept = []
+    for name in names:
+        if group_of(name) not in groups or without_group(name) not in CLOCK_EFFECTS:
+            kept.append(name)
+    return tuple(kept)
+
+
 def _delays(estimator: DelayEstimator, files: Mapping[str, Parts]) -> dict[str, Delay]:
     """Delays of the files that have a likeliest one."""
     found = {}
@@ -175,30 +196,35 @@ def _differences(
     estimator: DelayEstimator, files: Mapping[str, Parts], suspects: Mapping[str, float]
 ) -> dict[str, _Difference]:
     """Differences of files, once the vessel is fitted without them; empty if one is refuted."""
-    config, scale = estimator.config, estimator.time_scale
     corrected = {}
     for name, parts in files.items():
         later = Response(suspects.get(name, 0.0))
         corrected[name] = [with_response(one, later) for one in parts]
     refitted = _refitted(estimator, files, corrected)
-    delays = _delays(refitted, corrected)
-    others = {name: each for name, each in delays.items() if name not in suspects}
-    if len(others) + 1 < config.command_clock_min_files or not suspects.keys() <= delays.keys():
+    without_lag = _delays(refitted, corrected)
+    if not suspects.keys() <= without_lag.keys():
         return {}
     by_heading = _delays(refitted, _with_heading_alone(corrected))
-    lag = common_lag(refitted, corrected, delays)
+    lag = common_lag(refitted, corrected, without_lag)
+    delays = dict[str, Delay]()
+    for name, first in without_lag.items():
+        delay = refitted.refined(corrected[name], first.seconds, lag)
+        if delay is not None:
+            delays[name] = delay
     found = {}
     for name, moved in suspects.items():
+        others = {other: each for other, each in delays.items() if other not in suspects}
+        if name not in delays or len(others) + 1 < estimator.config.command_clock_min_files:
+            return {}
         difference = _difference(delays[name], list(others.values()), moved, estimator)
-        if not difference.exceeds(config, scale):
+        if not difference.exceeds(estimator.config, estimator.time_scale):
             return {}
         if not _heading_agrees(name, others, by_heading, difference, estimator):
             return {}
-        same_clock = mean_delay(refitted, {each: corrected[each] for each in others}, others, lag)
-        with_clock = likeliest_with_lag(refitted, corrected[name], delays[name], lag)[1]
-        rival = best_drive_rival(refitted, files[name], Response(same_clock, lag))
-        lead = with_clock - rival
-        if lead < config.command_clock_lead:
+        usual = Response(_mean(list(others.values())), lag)
+        rival = best_drive_rival(refitted, files[name], usual)
+        lead = delays[name].log_likelihood - rival
+        if lead < estimator.config.command_clock_lead:
             return {}
         found[name] = replace(difference, lead=lead)
     return found
@@ -222,15 +248,21 @@ def _difference(
 ) -> _Difference:
     """Difference from other files of a file that was moved by a time [s], with its sd."""
     config = estimator.config
+    middle = _mean(others)
     seconds = np.array([each.seconds for each in others])
-    precision = np.array([each.sd**-2 for each in others])
-    middle = float((precision * seconds).sum() / precision.sum())
+    precision = sum(each.sd**-2 for each in others)
     weight = config.command_clock_scatter_weight
     expected = config.command_clock_scatter * estimator.time_scale
     squares = float(((seconds - middle) ** 2).sum())
     scatter = (weight * expected**2 + squares) / (weight + len(others) - 1)
-    variance = max(own.sd**2, scatter) + max(1.0 / float(precision.sum()), scatter / len(others))
+    variance = max(own.sd**2, scatter) + max(1.0 / precision, scatter / len(others))
     return _Difference(moved + own.seconds - middle, float(np.sqrt(variance)), len(others))
+
+
+def _mean(delays: Sequence[Delay]) -> float:
+    """Mean of delays [s], weighted by their precision."""
+    seconds = [each.seconds for each in delays]
+    return float(np.average(seconds, weights=[each.sd**-2 for each in delays]))
 
 
 def _with_heading_alone(files: Mapping[str, Parts]) -> dict[str, list[MappedRecording]]:

@@ -112,18 +112,22 @@ class DelayEstimator:
             return None
         return self.refined(parts, float(delays[best]))
 
-    def refined(self, parts: Parts, near: float) -> Delay | None:
+    def refined(self, parts: Parts, near: float, lag: float = 0.0) -> Delay | None:
         """Return the likeliest delay of a file near a delay; None if there is no maximum.
+
+        A lag takes the place of some of the delay, at most of as much as its time constant.
 
         Args:
             parts: The mapped parts of the file.
-            near: The delay [s].
+            near: The delay without a lag [s].
+            lag: Time constant of a first-order lag of all drives [s].
         """
-        low, high = near - self.stride, near + self.stride
-        seconds, best = self.likeliest(parts, Response(), low, high)
-        if not np.isfinite(best) or abs(seconds - near) > EDGE * self.stride:
+        low, high = near - lag - self.stride, near + self.stride
+        seconds, best = self.likeliest(parts, Response(lag=lag), low, high)
+        edge = EDGE * 0.5 * (high - low)
+        if not np.isfinite(best) or abs(seconds - 0.5 * (low + high)) > edge:
             return None
-        sd = self._sd(parts, seconds)
+        sd = self._sd(parts, seconds, lag)
         if sd is None:
             return None
         return Delay(seconds, sd, best)
@@ -144,7 +148,7 @@ class DelayEstimator:
         )
 
     def maximum(
-        self, value: Callable[[float], float], low: float, high: float
+        self, value: Callable[[float], float], low: float, high: float, most: int = 100
     ) -> tuple[float, float]:
         """Return the time [s] between two others at which a value is largest, and the value.
 
@@ -152,13 +156,14 @@ class DelayEstimator:
             value: Function of a time [s].
             low: Smallest time [s].
             high: Largest time [s].
+            most: Largest number of steps of the search.
         """
         tolerance = self.config.command_clock_tolerance * self.stride
         found = minimize_scalar(
             lambda seconds: -value(float(seconds)),
             bounds=(low, high),
             method="bounded",
-            options={"xatol": tolerance},
+            options={"xatol": tolerance, "maxiter": most},
         )
         return float(found.x), -float(found.fun)
 
@@ -171,12 +176,12 @@ class DelayEstimator:
             found.append(moved.filter(values, on, self.fit.levels))
         return found
 
-    def _sd(self, parts: Parts, delay: float) -> float | None:
+    def _sd(self, parts: Parts, delay: float, lag: float) -> float | None:
         """Standard deviation [s] from the scores of intervals; None without a maximum."""
         step = self.config.command_clock_derivative * self.stride
         rows = sum(len(one.times) for one in parts)
         curvature, scores = 0.0, list[float]()
-        nearby = [self._passes(parts, Response(delay + d)) for d in (-step, 0.0, step)]
+        nearby = [self._passes(parts, Response(delay + d, lag)) for d in (-step, 0.0, step)]
         for before, at, after in zip(*nearby, strict=True):
             low, middle, high = (p.log_density_of_rows for p in (before, at, after))
             curvature += float(np.sum(2.0 * middle - low - high)) / step**2

@@ -11,62 +11,36 @@ import numpy as np
 from boatsim.diagnosis.checks.command_delays import Delay, DelayEstimator, Parts, Response
 
 
-def likeliest_with_lag(
-    estimator: DelayEstimator, parts: Parts, delay: Delay, lag: float
-) -> tuple[float, float]:
-    """Return the likeliest delay [s] of a file whose drives have a lag, and log likelihood [nats].
-
-    Args:
-        estimator: Estimator of delays.
-        parts: The mapped parts of the file.
-        delay: Its delay without a lag.
-        lag: Time constant of the lag of all drives [s].
-    """
-    low, high = delay.seconds - lag - estimator.stride, delay.seconds + estimator.stride
-    return estimator.likeliest(parts, Response(lag=lag), low, high)
-
-
 def common_lag(
     estimator: DelayEstimator, files: Mapping[str, Parts], delays: Mapping[str, Delay]
 ) -> float:
-    """Return the likeliest lag [s] of the drives of all files.
+    """Return the likeliest lag [s] of the drives of all files, each with a delay of its own.
 
     Args:
         estimator: Estimator of delays.
         files: Mapped parts of each file.
         delays: Delays of the files without a lag.
     """
-    best, found = -np.inf, 0.0
-    for factor in estimator.config.command_clock_lags:
-        lag = factor * estimator.time_scale
-        total = 0.0
+
+    def total(lag: float) -> float:
+        found = 0.0
         for name, delay in delays.items():
-            total += likeliest_with_lag(estimator, files[name], delay, lag)[1]
-        if not total > best:
+            low, high = delay.seconds - lag - estimator.stride, delay.seconds + estimator.stride
+            found += estimator.likeliest(files[name], Response(lag=lag), low, high)[1]
+        return found
+
+    lags = [factor * estimator.time_scale for factor in estimator.config.command_clock_lags]
+    totals = list[float]()
+    for lag in lags:
+        totals.append(total(lag))
+        if totals[-1] < max(totals):
             break
-        best, found = total, lag
-    return found
-
-
-def mean_delay(
-    estimator: DelayEstimator,
-    files: Mapping[str, Parts],
-    delays: Mapping[str, Delay],
-    lag: float,
-) -> float:
-    """Return the mean delay [s] of some files whose drives have a lag.
-
-    Args:
-        estimator: Estimator of delays.
-        files: Mapped parts of each file.
-        delays: Delays of the files without a lag.
-        lag: Time constant of the lag of all drives [s].
-    """
-    seconds, precisions = list[float](), list[float]()
-    for name, delay in delays.items():
-        seconds.append(likeliest_with_lag(estimator, files[name], delay, lag)[0])
-        precisions.append(delay.sd**-2)
-    return float(np.average(seconds, weights=precisions))
+    best = int(np.argmax(totals))
+    low, high = lags[max(best - 1, 0)], lags[min(best + 1, len(lags) - 1)]
+    refined, value = estimator.maximum(total, low, high, estimator.config.command_clock_lag_steps)
+    if value > totals[best]:
+        return refined
+    return lags[best]
 
 
 def best_drive_rival(estimator: DelayEstimator, parts: Parts, usual: Response) -> float:

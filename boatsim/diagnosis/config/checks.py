@@ -331,6 +331,9 @@ class ChecksConfig:
         "s",
         "Lags of the drives of all recordings that are compared, on a hull of 1.2 m.",
     )
+    command_clock_lag_steps: int = setting(
+        8, "count", "Steps of the search for the likeliest lag between them.", low=1
+    )
     command_excess: float = setting(
         1.05, "1", "Share of a command limit above which another unit is considered.", low=1.0
     )
@@ -816,6 +819,12 @@ class ChecksConfig:
     )
     clock_min_sds: float = setting(
         5.0, "1", "Standard deviations by which a correlation or a rate must be certain."
+    )
+    clock_share_sds: float = setting(
+        3.0,
+        "sd",
+        "Deviation by which a file shows less of a wander than the files that show it together, "
+        "so that its clock is even.",
     )
     clock_min_wander: float = setting(
         0.02,
