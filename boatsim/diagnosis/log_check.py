@@ -10,6 +10,7 @@ from boatsim.diagnosis.answer.schema import LogEntry
 from boatsim.diagnosis.checks import data_cleaning, run_checks
 from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
+from boatsim.diagnosis.checks.command_clock import find_command_clocks
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding, has_result
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
@@ -87,6 +88,8 @@ def check_files(
             velocity_is_late = any(f.name == "velocity_late" for f in findings)
             if not has_result(compared) and not velocity_is_late:
                 compared += check_late_sensors(usable, question.problem)
+            if not has_result(compared) and not velocity_is_late:
+                compared += find_command_clocks(question.problem, usable)
             for finding in compared:
                 findings.append(replace(finding, run=finding.run or str(usable[0].path)))
         except BadInput as error:

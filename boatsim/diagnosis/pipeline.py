@@ -29,6 +29,11 @@ from boatsim.diagnosis.answer.incomplete import (
 from boatsim.diagnosis.answer.results import collect_findings
 from boatsim.diagnosis.answer.schema import Answer
 from boatsim.diagnosis.answer.stages import Stages
+from boatsim.diagnosis.checks.command_clock import (
+    candidates_besides_clocks,
+    check_command_clock,
+    recordings_with_one_clock,
+)
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.ignored_commands import (
@@ -245,6 +250,14 @@ def _fit_and_select(
         loaded = recordings_that_follow_commands(loaded, question.problem, ignored)
         question = set_up_estimation_problem(loaded, question.problem.config)
         base = fit_baseline_models(question)
+    other_clocks = find_other_clocks(loaded, question, base)
+    if other_clocks:
+        findings = (*findings, *other_clocks)
+        loaded = recordings_with_one_clock(loaded, other_clocks)
+        question = set_up_estimation_problem(loaded, question.problem.config)
+        names = candidates_besides_clocks(question.candidates, loaded, other_clocks)
+        question = replace(question, candidates=names)
+        base = fit_baseline_models(question)
     selection = select_candidates(question, base, loaded, report_part_of(report, *SELECTING))
     given = loaded.findings
     loaded, kept = cut_unrecorded_pushes(loaded, question, selection.ranking.best)
@@ -398,6 +411,25 @@ def find_ignored_commands(
     names = [one.origin for one in (*loaded.fitted, *loaded.held_out)]
     recordings = (*question.problem.recordings, *question.held_out)
     return check_ignored_commands(question.problem, base.nominal, recordings, names)
+
+
+def find_other_clocks(
+    loaded: LoadedRecordings, question: Question, base: Baseline
+) -> list[Finding]:
+    """Return findings about recordings whose commands have another clock than those of the others.
+
+    Args:
+        loaded: The recordings.
+        question: The same recordings, mapped.
+        base: Fits of the vessel without candidate effects.
+
+    Returns:
+        Findings of kind "mended", because the diagnosis corrects these recordings.
+    """
+    names = [one.origin for one in (*loaded.fitted, *loaded.held_out)]
+    recordings = (*question.problem.recordings, *question.held_out)
+    found = check_command_clock(question.problem, base.recalibrated, recordings, names)
+    return [replace(finding, kind="mended") for finding in found]
 
 
 def fit_baseline_models(question: Question) -> Baseline:

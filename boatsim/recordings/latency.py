@@ -4,14 +4,16 @@ No value is interpolated: each sample keeps its value and gets an earlier time. 
 that time the recording gets one more row, in which the other poses and rates are empty.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, unknown_name_message
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.resample import (
+    SAME_TIME,
     Samples,
     clean_samples,
     mean_held_values,
@@ -64,6 +66,7 @@ def shifted_columns(
     # another column with empty rows may end early, as where the hull leaves the view of a camera
     motion = [samples for name, samples in measured.items() if name in (*POSE, *RATES)]
     rows = _common_rows(rows, [*moved, *motion, *held.values()], near)
+    rows = rows[_has_begun(rows, held.values())]  # a command is not known before its first sample
     shifted: dict[str, Array] = {}
     for name in signals:
         if name in held:
@@ -71,6 +74,34 @@ def shifted_columns(
         else:
             shifted[name] = nearest_samples(rows, measured[name], near)
     return rows, shifted
+
+
+def _has_begun(rows: Array, held: Iterable[Samples]) -> NDArray[np.bool_]:
+    """Whether all held signals have a value in each row (N,)."""
+    begin = max((float(samples.t[0]) for samples in held if len(samples.t)), default=-np.inf)
+    return np.asarray(rows >= begin - SAME_TIME)
+
+
+def shifted_commands(
+    t: Array, signals: Mapping[str, Array], latency: Mapping[str, float]
+) -> tuple[Array, dict[str, Array]]:
+    """Return commands at their own times that are moved to the times at which they were in force.
+
+    Args:
+        t: Times (K,) [s]; each command is in force until the next.
+        signals: Command -> values (K,).
+        latency: Column -> delay of its values [s].
+
+    Returns:
+        Times (M,) [s] of all changes, and values (M,).
+    """
+    own = {name: t - latency.get(name, 0.0) for name in signals}
+    times = np.unique(np.concatenate([t[:0], *own.values()]))
+    shifted: dict[str, Array] = {}
+    for name, values in signals.items():
+        last = np.searchsorted(own[name], times, side="right") - 1
+        shifted[name] = values[np.maximum(last, 0)]
+    return times, shifted
 
 
 def _rows(t: Array, moved: Sequence[Samples]) -> tuple[Array, float]:

@@ -28,7 +28,7 @@ from boatsim.recordings.interpolated_wraps import (
     empty_across_wrap,
     without_interpolated_wraps,
 )
-from boatsim.recordings.latency import shifted_columns
+from boatsim.recordings.latency import shifted_columns, shifted_commands
 from boatsim.recordings.motion_clock import times_by_motion
 from boatsim.recordings.notebook.arrow import signal_table
 from boatsim.recordings.notebook.data_frame import data_frame
@@ -284,7 +284,10 @@ class Recording:
         """
         place = self.origin
         t, signals = shifted_columns(self.t, self.signals, latency, place)
-        return replace(self, t=t, signals=signals)
+        orders = self.orders
+        if orders is not None:
+            orders = TimedCommands(*shifted_commands(orders.t, orders.signals, latency))
+        return replace(self, t=t, signals=signals, orders=orders)
 
     def parts(self) -> list["Recording"]:
         """Return the parts of a recording that its notes select by `use`, or the whole recording.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.recordings.table import read
+from boatsim.recordings.table import Recording, TimedCommands, read
 
 
 def x(t):
@@ -53,6 +53,25 @@ def test_late_positions_are_those_of_their_rows(tmp_path, late, every):
 def test_a_late_command_is_in_force_earlier(tmp_path):
     run = read(written(tmp_path, 0.0, "latency.thrust_motor_N = 0.5\n"))
     assert run["thrust_motor_N"][:-6] == pytest.approx(thrust(run.t[:-6] + 0.5 + 1e-9))
+
+
+def test_no_command_is_known_before_a_command_that_acts_later(tmp_path):
+    run = read(written(tmp_path, 0.0, "latency.thrust_motor_N = -0.54\n"))
+    assert np.isfinite(run["thrust_motor_N"]).all()
+    off = np.abs((run.t - 0.54 + 1.5) % 3.0 - 1.5) > 0.11  # not in the row of a step
+    assert run["thrust_motor_N"][off] == pytest.approx(thrust(run.t[off] - 0.54 + 1e-9))
+
+
+def test_commands_at_their_own_times_are_moved_with_their_columns():
+    t = np.arange(0.0, 10.0, 0.1)
+    fine = np.arange(0.0, 10.0, 0.01)
+    orders = TimedCommands(fine, {"thrust_N": np.floor(fine), "steer_rad": np.floor(2.0 * fine)})
+    run = Recording("run", t, {"thrust_N": np.floor(t), "steer_rad": t}, orders=orders)
+    moved = run.without_latency({"thrust_N": -0.253}).orders
+    at = np.arange(1.0, 9.0, 0.0173)
+    last = np.searchsorted(moved.t, at, side="right") - 1
+    assert moved.signals["steer_rad"][last] == pytest.approx(np.floor(2.0 * at))
+    assert moved.signals["thrust_N"][last] == pytest.approx(np.floor(at - 0.253))
 
 
 def test_a_wrong_column_and_half_a_fix_are_refused_in_one_line(tmp_path):

@@ -7,7 +7,7 @@ from boatsim.diagnosis.answer.schema import LogEntry
 from boatsim.diagnosis.checks.finding import (
     LOG_NOT_BOAT,
     Finding,
-    correction_lines,
+    alternative_lines,
     recording_toml_lines,
 )
 from boatsim.physics.vessel import Vessel
@@ -51,7 +51,7 @@ def finding_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEnt
         "spans_s": list(map(list, finding.spans)),
         "lines": recording_toml_lines(finding, sources),
         "alternatives": [
-            {"words": words, "lines": _without_header(correction_lines(changes, sources))}
+            {"words": words, "lines": _without_header(alternative_lines(finding, changes, sources))}
             for words, changes in finding.alternatives
         ],
     }

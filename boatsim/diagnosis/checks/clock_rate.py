@@ -6,8 +6,9 @@ through the water changes one of them. If both deviate from the times of the row
 the times of the rows are wrong: rows that were resampled by time stamps that came late or early, or
 a logger whose clock runs fast or slow.
 
-Each file has its own clock. A wander is sought about the mean rate of each file, and one
-constant rate of all files is compared with one rate per file.
+Each file has its own clock. A wander is sought in each file about its mean rate, and then in all
+files together that show none alone; one constant rate of the files without a wander is compared
+with one rate per file.
 """
 
 from collections.abc import Sequence
@@ -73,6 +74,19 @@ class _RateComparison:
         freedom = max(self.effective_sample_size - 1.0 - len(np.unique(self.file)), 0.0)
         return c * float(np.sqrt(freedom / max(1.0 - c * c, 1e-9)))
 
+    def agrees(self, config: ChecksConfig) -> bool:
+        """Return whether both rates certainly vary in the same way."""
+        enough = self.correlation > config.clock_min_correlation
+        return enough and self.significance > config.clock_min_sds
+
+    def covariance(self) -> tuple[float, float]:
+        """Covariance of both rates about their means, and its standard deviation."""
+        a = self.track - _mean(self.track, self.weight)
+        b = self.turning - _mean(self.turning, self.weight)
+        middle = _mean(a * b, self.weight)
+        variance = _mean((a * b - middle) ** 2, self.weight)
+        return middle, float(np.sqrt(variance / self.effective_sample_size))
+
     @property
     def effective_sample_size(self) -> float:
         """Number of stretches of equal weight that would be as informative."""
@@ -124,22 +138,70 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
         return []
     gain, gain_sd = compared.velocity_gain()
     wrong_gain = abs(gain - 1.0) > max(config.clock_min_gain, config.clock_gain_sds * gain_sd)
-    agree = compared.correlation > config.clock_min_correlation
-    found = list[Finding]()
-    if agree and compared.significance > config.clock_min_sds:
-        found = _wander(examined, gain if wrong_gain else 1.0, compared, config)
-    elif not wrong_gain:
-        different = _different_rates(compared, config)
-        for file in different:
-            ours = [recording for recording in examined if recording.origin == files[file]]
-            runs = [run for run, name in zip(long, files, strict=True) if name == files[file]]
-            own = compared.selected(compared.file == file)
-            for finding in _constant_rate(ours, own, _track_rate(runs), config):
-                found.append(replace(finding, of_run_only=True))
-        if not different:
-            found = _constant_rate(examined, compared, _track_rate(long), config)
+    found, uneven = list[Finding](), list[int]()
+    wandering = _wandering_files(compared, config)
+    count = sum(map(len, wandering))
+    for together in wandering:
+        uneven += together
+        names = {files[file] for file in together}
+        ours = [recording for recording in examined if recording.origin in names]
+        own = compared.selected(np.isin(compared.file, together))
+        for finding in _wander(ours, gain if wrong_gain else 1.0, own, config):
+            found.append(replace(finding, of_run_only=count < len(np.unique(compared.file))))
+    if not wrong_gain:
+        names = {files[file] for file in uneven}
+        even = [recording for recording in examined if recording.origin not in names]
+        steady = compared.selected(~np.isin(compared.file, uneven))
+        runs = [(n, run) for n, run in zip(files, long, strict=True) if n not in names]
+        if len(steady.track) >= config.clock_min_stretches:
+            found += _constant_rates(even, steady, runs, files, config)
     if found and wrong_gain:
         found += [_velocity_gain(recording, gain, gain_sd, config) for recording in examined]
+    return found
+
+
+def _wandering_files(compared: _RateComparison, config: ChecksConfig) -> list[list[int]]:
+    """Files whose clocks run unevenly: each that shows it alone, and others that do together."""
+    alone, rest = list[list[int]](), list[int]()
+    for file in np.unique(compared.file).tolist():
+        own = compared.selected(compared.file == file)
+        if len(own.track) >= config.clock_min_stretches and own.agrees(config):
+            alone.append([file])
+        else:
+            rest.append(file)
+    others = compared.selected(np.isin(compared.file, rest))
+    if len(others.track) < config.clock_min_stretches or not others.agrees(config):
+        return alone
+    each = {file: others.selected(others.file == file) for file in rest}
+    shared = sum(len(own.track) * own.covariance()[0] for own in each.values()) / len(others.track)
+    together = []
+    for file, own in each.items():
+        covariance, sd = own.covariance()
+        if covariance > shared - config.clock_share_sds * sd:
+            together.append(file)
+    if together:
+        alone.append(together)
+    return alone
+
+
+def _constant_rates(
+    recordings: Sequence[Recording],
+    compared: _RateComparison,
+    runs: Sequence[tuple[str, Stretches]],
+    files: Sequence[str],
+    config: ChecksConfig,
+) -> list[Finding]:
+    """Findings of constant rates, one for each file where they differ, else one for all files."""
+    different = _different_rates(compared, config)
+    if not different:
+        return _constant_rate(recordings, compared, _track_rate([run for _, run in runs]), config)
+    found = list[Finding]()
+    for file in different:
+        ours = [recording for recording in recordings if recording.origin == files[file]]
+        own = compared.selected(compared.file == file)
+        everywhere = _track_rate([run for name, run in runs if name == files[file]])
+        for finding in _constant_rate(ours, own, everywhere, config):
+            found.append(replace(finding, of_run_only=True))
     return found
 
 
@@ -219,6 +281,9 @@ def _wander(
     if estimate.sd < config.clock_min_wander:
         return []
     rates = iter(estimate.rates)
+    count, where = len({recording.origin for recording in recordings}), ""
+    if count > 1:
+        where = f" in {count} recordings"
     found = []
     for recording, run in zip(recordings, runs, strict=True):
         if run is None:
@@ -229,7 +294,7 @@ def _wander(
             f"a second of the log lasted {lowest:.2f} to {highest:.2f} s, {own.mean():.2f} s on "
             "average, by the distances and the turns of the vessel. Track and heading agree in "
             f"this (correlation {compared.correlation:.2f} over {len(compared.track)} stretches "
-            "of turning in all recordings), so that neither speed sensor nor yaw rate is the cause"
+            f"of turning{where}), so that neither speed sensor nor yaw rate is the cause"
         )
         found.append(
             Finding(

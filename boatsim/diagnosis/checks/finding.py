@@ -260,6 +260,24 @@ def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) ->
     if finding.clock:
         lines.append(f'clock = "{finding.clock}"')
     lines += correction_lines(finding.changes, sources)
+    return _lines_of_finding(lines, finding)
+
+
+def alternative_lines(
+    finding: Finding, changes: Sequence[Change], sources: Mapping[str, Expression]
+) -> list[str]:
+    """Return the lines of recording.toml for another explanation of a finding.
+
+    Args:
+        finding: The finding.
+        changes: Changes of columns of the other explanation.
+        sources: Expressions from which the columns are computed so far.
+    """
+    return _lines_of_finding(correction_lines(changes, sources), finding)
+
+
+def _lines_of_finding(lines: list[str], finding: Finding) -> list[str]:
+    """Lines for all recordings of a folder, or for the recording of the finding alone."""
     if finding.of_run_only:
         return _lines_of_run(lines, Path(finding.run).stem)
     return lines

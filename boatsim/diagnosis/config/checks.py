@@ -280,6 +280,83 @@ class ChecksConfig:
     clock_speed_rows: int = setting(
         9, "count", "Rows of the moving average of the speed around a time jump.", low=1
     )
+    command_clock_max_delay: float = setting(
+        1.0,
+        "s",
+        "Largest delay between commands and motion that is sought in a single recording, on a hull "
+        "of 1.2 m; stamps of loggers and filters of sensors differ by less.",
+        low=0.1,
+    )
+    command_clock_step: float = setting(
+        0.1, "s", "Distance of the delays that are compared first, on a hull of 1.2 m.", low=1e-3
+    )
+    command_clock_tolerance: float = setting(
+        0.002, "1", "Tolerance of the likeliest delay, as a share of that distance.", low=1e-6
+    )
+    command_clock_derivative: float = setting(
+        0.1, "1", "Step of derivatives by the delay, as a share of that distance.", low=1e-3
+    )
+    command_clock_intervals: int = setting(
+        16,
+        "count",
+        "Intervals of a file whose scores scatter; each is longer than the correlation time of "
+        "the unexplained force.",
+        low=4,
+    )
+    command_clock_min_files: int = setting(
+        4,
+        "count",
+        "Files from which one of them can differ from the others; of fewer files it is unclear "
+        "which is right.",
+        low=3,
+    )
+    command_clock_max_share: float = setting(
+        0.34, "1", "Largest share of the files that may differ from the others.", high=0.49
+    )
+    command_clock_scatter: float = setting(
+        0.01,
+        "s",
+        "Expected scatter of the delays of files with equal clocks, on a hull of 1.2 m, which "
+        "different manoeuvres cause in a vessel model that is not exact.",
+        low=1e-4,
+    )
+    command_clock_scatter_weight: float = setting(
+        4.0,
+        "count",
+        "Number of files whose scatter has the weight of this expectation.",
+    )
+    command_clock_min_delay: float = setting(
+        0.03, "s", "Smallest difference of a clock that is reported, on a hull of 1.2 m."
+    )
+    command_clock_min_sds: float = setting(
+        5.0, "sd", "Deviation from the other files beyond which a clock differs.", low=3.0
+    )
+    command_clock_suspect_sds: float = setting(
+        2.0,
+        "sd",
+        "Deviation of a file from the others from which its clock is examined: before the vessel "
+        "is fitted without it, its uncertainty is overestimated.",
+    )
+    command_clock_agreement: float = setting(
+        3.0,
+        "sd",
+        "Deviation between the delays by the heading alone and by all sensors up to which all "
+        "sensors have the same delay.",
+    )
+    command_clock_lead: float = setting(
+        3.0,
+        "nats",
+        "Log likelihood by which another clock must exceed a slower drive or late commands of one "
+        "drive in this recording: odds of 20.",
+    )
+    command_clock_lags: tuple[float, ...] = setting(
+        (0.0, 0.1, 0.2, 0.4, 0.8),
+        "s",
+        "Lags of the drives of all recordings that are compared, on a hull of 1.2 m.",
+    )
+    command_clock_lag_steps: int = setting(
+        8, "count", "Steps of the search for the likeliest lag between them.", low=1
+    )
     command_excess: float = setting(
         1.05, "1", "Share of a command limit above which another unit is considered.", low=1.0
     )
@@ -765,6 +842,12 @@ class ChecksConfig:
     )
     clock_min_sds: float = setting(
         5.0, "1", "Standard deviations by which a correlation or a rate must be certain."
+    )
+    clock_share_sds: float = setting(
+        3.0,
+        "sd",
+        "Deviation by which a file shows less of a wander than the files that show it together, "
+        "so that its clock is even.",
     )
     clock_min_wander: float = setting(
         0.02,

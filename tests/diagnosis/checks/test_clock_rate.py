@@ -68,6 +68,40 @@ def test_files_with_clock_rates_of_their_own(rates: tuple[float, ...]) -> None:
     )
 
 
+@pytest.mark.parametrize(("count", "noise"), [(1200, 1.0), (600, 1.0), (600, 0.2)])
+@pytest.mark.parametrize("wandering", [{2}, {0, 3}])
+def test_only_the_recordings_whose_clock_wanders_are_named(
+    wandering: set[int], count: int, noise: float
+) -> None:
+    logs = []
+    for k in range(5):
+        log = winding_ship(20 + k, count, noise)
+        if k in wandering:
+            log = stamped(log, wandering_rate(log.t, 0.1, k))
+        logs.append(replace(log, name=f"run_{k}"))
+    found = check_clock_rate(logs, DEFAULT.checks)
+    assert [(f.name, f.run) for f in found] == [
+        ("clock_wanders", f"run_{k}") for k in sorted(wandering)
+    ]
+    lines = recording_toml_lines(found[0], {})
+    assert lines == [f"[runs.{found[0].run}]", 'clock = "motion"']
+
+
+def test_a_wandering_clock_does_not_hide_a_slow_one() -> None:
+    logs = []
+    for k, ship in enumerate(fleet(4)):
+        rate = np.full(len(ship) - 1, 1.06 if k == 1 else 1.0)
+        if k == 3:
+            rate = wandering_rate(ship.t, 0.1, k)
+        logs.append(replace(stamped(ship, rate), name=f"run_{k}"))
+    found = {f.run: f for f in check_clock_rate(logs, DEFAULT.checks)}
+    assert {run: f.name for run, f in found.items()} == {
+        "run_1": "clock_rate",
+        "run_3": "clock_wanders",
+    }
+    assert found["run_1"].changes[0].factor == pytest.approx(1.06, abs=0.01)
+
+
 @pytest.mark.parametrize("noise", [0.2, 1.0, 4.0])
 def test_right_logs_have_no_finding(noise: float) -> None:
     for seed in range(10):
