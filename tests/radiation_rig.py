@@ -71,6 +71,7 @@ vertical = 1.0
 [diagnosis]
 rate = 10.0
 reasons = {{ rate = "ten rows in a period" }}
+coefficient_uncertainty = {{ damping = 0.5 }}
 facts = {{ guided = true, indoors = true, forward_speed_mps = 0.0 }}
 """
 

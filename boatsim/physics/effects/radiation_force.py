@@ -189,10 +189,11 @@ class HeaveRadiation(MotionMemory):
     law: ClassVar = law
     remember_motion: ClassVar = remember_motion
     strength: ClassVar = ("damping",)
+    contained_in: ClassVar = {"damping": "linear_damping.heave"}
     starts: ClassVar = (
-        {"damping": 30.0, "frequency": 3.0},
-        {"damping": 30.0, "frequency": 6.0},
-        {"damping": 30.0, "frequency": 12.0},
+        {"damping": 3.0, "frequency": 3.0},
+        {"damping": 3.0, "frequency": 6.0},
+        {"damping": 3.0, "frequency": 12.0},
     )
 
     damping: float = param(
@@ -216,17 +217,18 @@ class HeaveRadiation(MotionMemory):
         spread=4.0,
         axis="heave",
         inactive_value=6.0,
+        within=(1.5, 25.0),
     )
     damping_ratio: float = param(
-        0.7,
-        low=0.05,
-        high=3.0,
+        0.5,
+        low=0.1,
+        high=1.0,
         unit="",
         words="damping ratio of the memory; a large one: damping over a wide band of frequencies",
         fit=True,
-        spread=0.4,
+        spread=0.3,
         axis="heave",
-        inactive_value=0.7,
+        inactive_value=0.5,
     )
     in_sway: float = axis_parameter("sway")
     in_heave: float = axis_parameter("heave", 1.0)
@@ -261,12 +263,13 @@ RollRadiation = preset_effect(
     "RollRadiation",
     words="the damping and the added mass in roll depend on the frequency: the hull radiates waves",
     shown_by="oscillations in roll at several frequencies",
+    contained_in={"damping": "linear_damping.roll"},
     frees=parameters_of_axis("roll", 0.2),
     fixed={"in_sway": 0.0, "in_heave": 0.0, "in_roll": 1.0, "in_pitch": 0.0},
     starts=(
-        {"damping": 0.05, "frequency": 3.0},
-        {"damping": 0.05, "frequency": 6.0},
-        {"damping": 0.05, "frequency": 12.0},
+        {"damping": 0.01, "frequency": 3.0},
+        {"damping": 0.01, "frequency": 6.0},
+        {"damping": 0.01, "frequency": 12.0},
     ),
 )
 
@@ -275,11 +278,12 @@ PitchRadiation = preset_effect(
     "PitchRadiation",
     words="the damping and the added mass in pitch depend on the frequency: the hull radiates waves",
     shown_by="oscillations in pitch at several frequencies",
+    contained_in={"damping": "linear_damping.pitch"},
     frees=parameters_of_axis("pitch", 5.0),
     fixed={"in_sway": 0.0, "in_heave": 0.0, "in_roll": 0.0, "in_pitch": 1.0},
     starts=(
-        {"damping": 1.0, "frequency": 3.0},
-        {"damping": 1.0, "frequency": 6.0},
-        {"damping": 1.0, "frequency": 12.0},
+        {"damping": 0.1, "frequency": 3.0},
+        {"damping": 0.1, "frequency": 6.0},
+        {"damping": 0.1, "frequency": 12.0},
     ),
 )
