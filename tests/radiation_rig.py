@@ -72,7 +72,7 @@ vertical = 1.0
 rate = 10.0
 reasons = {{ rate = "ten rows in a period" }}
 coefficient_uncertainty = {{ damping = 0.5 }}
-facts = {{ guided = true, indoors = true, forward_speed_mps = 0.0 }}
+facts = {{ indoors = true, still_water = true }}
 """
 
 

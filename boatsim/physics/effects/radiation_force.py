@@ -240,6 +240,20 @@ class HeaveRadiation(MotionMemory):
         """Number of floats stored from step to step: speed, oscillator and factors of a step."""
         return STATES
 
+    def response(self, frequency: Array) -> Array:
+        """Return the force per speed of a harmonic motion, with the sign of a damping.
+
+        Args:
+            frequency: (N,) frequencies of the motion [rad/s].
+
+        Returns:
+            (N,) complex values [N s/m or N m s]: the real part is the damping, the imaginary part
+            over the frequency the added mass.
+        """
+        w, a = frequency, 2.0 * self.damping_ratio * self.frequency
+        found: Array = self.damping * 1j * a * w / (self.frequency**2 - w**2 + 1j * a * w)
+        return found
+
 
 def parameters_of_axis(axis: str, spread: float) -> dict[str, ParameterChanges]:
     """Return the free parameters of the radiation moment about one axis.
@@ -261,7 +275,9 @@ def parameters_of_axis(axis: str, spread: float) -> dict[str, ParameterChanges]:
 RollRadiation = preset_effect(
     HeaveRadiation,
     "RollRadiation",
-    words="the damping and the added mass in roll depend on the frequency: the hull radiates waves",
+    words=(
+        "the damping and the added mass in roll depend on the frequency: the hull radiates waves"
+    ),
     shown_by="oscillations in roll at several frequencies",
     contained_in={"damping": "linear_damping.roll"},
     frees=parameters_of_axis("roll", 0.2),
@@ -276,7 +292,9 @@ RollRadiation = preset_effect(
 PitchRadiation = preset_effect(
     HeaveRadiation,
     "PitchRadiation",
-    words="the damping and the added mass in pitch depend on the frequency: the hull radiates waves",
+    words=(
+        "the damping and the added mass in pitch depend on the frequency: the hull radiates waves"
+    ),
     shown_by="oscillations in pitch at several frequencies",
     contained_in={"damping": "linear_damping.pitch"},
     frees=parameters_of_axis("pitch", 5.0),
