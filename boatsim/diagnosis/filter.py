@@ -29,7 +29,7 @@ from boatsim.diagnosis.work import (
     WorkCount,
     integration_count,
 )
-from boatsim.physics.base import DriftingMeasurement, RandomForce
+from boatsim.physics.base import DriftingMeasurement, MotionMemory, RandomForce
 from boatsim.physics.kernel.records import (
     FilterHistory,
     InitialState,
@@ -182,6 +182,8 @@ class FreeRunStarts(NamedTuple):
     ends: NDArray[np.int64]  # (runs,)
     states: Array  # (runs, 2 NQ) smoothed joint coordinates and their rates
     drifts: tuple[Drift, ...]
+    # (N, 2 NQ) those of all rows, where effects remember the motion before a run; else (0, 2 NQ)
+    path: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -496,7 +498,7 @@ class MappedRecording:
             VesselNumbers(rigid_body_values(values), values, on),
             begin.starts,
             begin.ends,
-            begin.states,
+            np.concatenate([begin.states, begin.path]),
             out,
         )
         runs = []
@@ -525,7 +527,7 @@ class MappedRecording:
         starts, ends = free_run_segments(self.times, horizon, skipped)
         if not starts:
             none = np.zeros(0, dtype=np.int64)
-            return FreeRunStarts(none, none, np.zeros((0, 2 * nq)), ())
+            return FreeRunStarts(none, none, np.zeros((0, 2 * nq)), (), np.zeros((0, 2 * nq)))
         means = self.smooth(values, on, levels).means
         oscillators = 2 if self._oscillates(values, on) else 0
         at = (3 + oscillators) * nq
@@ -534,7 +536,16 @@ class MappedRecording:
             if isinstance(effect, DriftingMeasurement) and acts:
                 drifts.append(Drift(effect.name, means[starts, at : at + nq].copy()))
         states = np.ascontiguousarray(means[starts, : 2 * nq])
-        return FreeRunStarts(np.array(starts), np.array(ends), states, tuple(drifts))
+        rows = len(means) if self._remembers_motion(on) else 0
+        path = np.ascontiguousarray(means[:rows, : 2 * nq])
+        return FreeRunStarts(np.array(starts), np.array(ends), states, tuple(drifts), path)
+
+    def _remembers_motion(self, on: Array) -> bool:
+        """Whether an effect acts whose force depends on the past motion of the hull."""
+        for effect, acts in zip(self.program.effects, on, strict=True):
+            if acts and isinstance(effect, MotionMemory):
+                return True
+        return False
 
     def _has_further_states(self, on: Array) -> bool:
         """Whether an effect acts that adds entries to the filter's state."""

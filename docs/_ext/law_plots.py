@@ -78,6 +78,8 @@ def plot(name: str) -> str:
     }
     if over in special:
         return special[over](case)
+    if over == "frequency":
+        return _frequency_plot(name, case)
     kind = content.load_class("effect", name)
     with np.errstate(over="ignore"):  # unsigned integers of the random numbers wrap around
         if issubclass(kind, Measurement):
@@ -322,6 +324,21 @@ def _measured(error: Any, over: str, signal: str, x: Array) -> tuple[Array, Arra
         true[i] = getattr(moved, signal)
         recorded[i] = getattr(law(*arguments, error.values()), signal)
     return true, recorded
+
+
+def _frequency_plot(name: str, case: Case) -> str:
+    """Return the plot of a radiation force: damping and added mass over the frequency."""
+    spec = case["plot"]
+    effect: Any = content.load_class("effect", name)(**case["add"])
+    w = np.linspace(spec["low"], spec["high"], POINTS)
+    found = effect.response(w)
+    damping, mass = spec["units"]
+    axes = [
+        Axes(f"damping [{damping}]", [Curve("", w, found.real)]),
+        Axes(f"added mass [{mass}]", [Curve("", w, found.imag / w)]),
+    ]
+    label = "frequency of the motion [rad/s]"
+    return line_chart(axes, label, f"Law of {name}: damping and added mass over the frequency")
 
 
 def _delay_plot(case: Case) -> str:

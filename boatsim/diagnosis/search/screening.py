@@ -272,6 +272,27 @@ def transfer_coefficient_change(start: Fit, effect: Effect) -> Fit:
     return replace(start, theta=theta)
 
 
+def transfer_surplus(start: Fit, effect: Effect, values: Array) -> Fit:
+    """Transfer what a refit added to a coefficient to the parameter that it had to contain.
+
+    Args:
+        start: Fit to which the effect was added, not yet refitted.
+        effect: The candidate that was added.
+        values: Parameter values of the vessel as in its file.
+    """
+    theta = start.theta.copy()
+    own = {f.name: i for i, f in enumerate(start.free) if f.effect == effect.name and not f.group}
+    for name, coefficient in type(effect).contained_in.items():
+        for i, f in enumerate(start.free):
+            if not f.relative or f"{f.effect}.{f.name}" != coefficient or name not in own:
+                continue
+            surplus = (theta[i] - f.mean) * values[f.at[0]]
+            if surplus > theta[own[name]]:
+                theta[own[name]] = min(surplus, start.free[own[name]].high)
+                theta[i] = f.mean
+    return replace(start, theta=theta)
+
+
 def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
     """Add a candidate effect to a fit at each of its starting points; nothing is fitted yet.
 
@@ -280,11 +301,13 @@ def starting_fits(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
         base: Fit to which the candidate effect is added.
         effect: The candidate effect.
     """
-    points = starting_points(problem, effect)
-    return [
-        transfer_coefficient_change(add_effect(problem, base, effect.name, x), effect)
-        for x in points
-    ]
+    values = problem.recordings[0].values
+    found = []
+    for point in starting_points(problem, effect):
+        start = add_effect(problem, base, effect.name, point)
+        start = transfer_coefficient_change(start, effect)
+        found.append(transfer_surplus(start, effect, values))
+    return found
 
 
 def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:

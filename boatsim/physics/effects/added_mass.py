@@ -245,9 +245,16 @@ class AddedMassError(CoefficientRelease):
 
     formula: ClassVar[str] = (
         r"X_{\dot u} = k_u X_{\dot u}^0, \quad Y_{\dot v} = k_v Y_{\dot v}^0, \quad "
-        r"N_{\dot r} = k_r N_{\dot r}^0"
+        r"N_{\dot r} = k_r N_{\dot r}^0, \quad Z_{\dot w} = k_w Z_{\dot w}^0, \quad M_{\dot q} = k_q "
+        r"M_{\dot q}^0"
     )
-    symbols: ClassVar = {"surge_factor": "k_u", "sway_factor": "k_v", "yaw_factor": "k_r"}
+    symbols: ClassVar = {
+        "surge_factor": "k_u",
+        "sway_factor": "k_v",
+        "yaw_factor": "k_r",
+        "heave_factor": "k_w",
+        "pitch_factor": "k_q",
+    }
     ruled_out_by: ClassVar = {"no_water": (True,)}
     words: ClassVar[str] = (
         "the added mass differs from its specified value: the hull floats deeper or shallower"
@@ -273,6 +280,18 @@ class AddedMassError(CoefficientRelease):
         words="factor on the yaw added mass",
         axis="yaw",
         in_per_cent="the added mass in yaw is {share} of its value in the vessel file",
+    )
+    heave_factor: float = factor_parameter(
+        "added_mass.heave",
+        words="factor on the heave added mass",
+        axis="heave",
+        in_per_cent="the added mass in heave is {share} of its value in the vessel file",
+    )
+    pitch_factor: float = factor_parameter(
+        "added_mass.pitch",
+        words="factor on the pitch added mass",
+        axis="pitch",
+        in_per_cent="the added mass in pitch is {share} of its value in the vessel file",
     )
 
 

@@ -252,12 +252,14 @@ class DampingError(CoefficientRelease):
     its own model.
     """
 
-    formula: ClassVar[str] = r"d_i = k_i \, d_i^0, \quad i = u, v, r, p"
+    formula: ClassVar[str] = r"d_i = k_i \, d_i^0, \quad i = u, v, r, p, w, q"
     symbols: ClassVar = {
         "surge_factor": "k_u",
         "sway_factor": "k_v",
         "yaw_factor": "k_r",
         "roll_factor": "k_p",
+        "heave_factor": "k_w",
+        "pitch_factor": "k_q",
     }
     words: ClassVar[str] = (
         "the damping coefficients differ from their values by more than their specified uncertainty"
@@ -295,6 +297,20 @@ class DampingError(CoefficientRelease):
         words="factor on the roll damping",
         in_per_cent="the damping in roll is {share} of its value in the vessel file",
         axis="roll",
+    )
+    heave_factor: float = factor_parameter(
+        "linear_damping.heave",
+        "quadratic_damping.heave",
+        words="factor on the heave damping",
+        in_per_cent="the damping in heave is {share} of its value in the vessel file",
+        axis="heave",
+    )
+    pitch_factor: float = factor_parameter(
+        "linear_damping.pitch",
+        "quadratic_damping.pitch",
+        words="factor on the pitch damping",
+        in_per_cent="the damping in pitch is {share} of its value in the vessel file",
+        axis="pitch",
     )
 
 

@@ -624,7 +624,8 @@ def simulate_intervals(
 
     Run j extends from row starts[j] to row ends[j] and begins at states[j] (2 NQ,). The actuators
     are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with
-    every channel as the recording would show it.
+    every channel as the recording would show it. States of all rows of the recording may follow
+    those of the runs: from them effects remember the motion before a run; else it is rest.
     """
     times, (body, p, on) = inputs.times, model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
@@ -634,14 +635,15 @@ def simulate_intervals(
     laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
     saved, rows = np.zeros((len(starts), MEMORY)), np.zeros(len(starts), dtype=np.int64)
     # Before the runs begin, the actuators alone are advanced, unless effects remember the motion.
-    moves = HAS_ADVANCE_MOTION_MEMORY
+    path = np.int64(len(starts))  # index of the state of the first row
+    moves = HAS_ADVANCE_MOTION_MEMORY and len(states) > path
     final = np.int64(0)
     for run in range(len(starts)):
         final = max(final, starts[run])
     for i in range(final + 1):
         if i > 0:
             for j in range(NY):
-                y[j] = 0.0
+                y[j] = states[path + i - 1, j] if moves else 0.0
             last = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
         for run in range(len(starts)):
             if starts[run] == i:

@@ -35,7 +35,8 @@ def path(mapped: MappedRecording, speed: float, step: float | None) -> Array:
     nq = mapped.program.module.NQ
     states = np.zeros((1, 2 * nq))
     states[0, nq] = speed
-    begin = FreeRunStarts(np.array([0]), np.array([len(MINUTE) - 1]), states, ())
+    ends = np.array([len(MINUTE) - 1])
+    begin = FreeRunStarts(np.array([0]), ends, states, (), states[:0])
     on = mapped.program.effect_switches(())
     return mapped.simulate_from(mapped.values, on, begin, step)[0][1]
 
