@@ -2,7 +2,7 @@
 
 Such a velocity has another sign or unit, a delay, or belongs to another point of the hull. Sensors
 may have rates of their own: each rate is compared with the poses at times between neighbouring
-samples of both, and never across a gap of a sensor.
+samples of both, and never across a gap of a sensor. Delays are judged for all sensors together.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.equal_steps import equal_steps, moving_average, values_at_times
 from boatsim.diagnosis.checks.finding import PLANAR_POSE, Change, Finding, delay_corrections
+from boatsim.diagnosis.checks.late_by_kinematics import late_sensor_findings
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
@@ -19,9 +21,8 @@ from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
 
 RATES = ("u_mps", "v_mps", "r_radps")
+NOT_BY_DELAY = ("velocity_sign", "velocity_unit")  # faults that are corrected before delays
 SPEED_UNITS = ("kn", "kmh", "cmps")
-# Equal steps per row, at most: memory is bounded for rows in bursts
-MAX_ROWS_RATIO = 4
 
 
 def check_recorded_rates(
@@ -44,7 +45,9 @@ def check_recorded_rates(
         compared = _sampled_comparison(recording, name, vessel, config)
         if compared is not None:
             found += _compare(compared, vessel, config)
-    return found
+    if any(finding.name in NOT_BY_DELAY for finding in found):
+        return found
+    return late_sensor_findings(recording, vessel, config) or found
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ def _sampled_comparison(
         if len(sampled) < config.rates_min_rows:
             return None
         intervals.append(float(np.median(np.diff(sampled))))
-    t = _equal_steps(recording.t)
+    t = equal_steps(recording.t)
     if not len(t):
         return None
     step = float(t[1] - t[0])
@@ -100,34 +103,13 @@ def _sampled_comparison(
         return None
     columns = {}
     for column in (name, *poses):
-        columns[column] = _at_times(t, recording.t, recording[column], config)
+        columns[column] = values_at_times(t, recording.t, recording[column], config)
     differenced = _rates_of_poses(t, columns, half)
-    recorded = _moving_average(columns[name], half)[half : len(t) - half]
+    recorded = moving_average(columns[name], half)[half : len(t) - half]
     found = _Comparison(name, recorded, differenced[name], differenced["r_radps"], step, interval)
     if found.known.sum() < least:
         return None
     return found
-
-
-def _equal_steps(t: Array) -> Array:
-    """Times from the first to the last row at the median interval of the rows; empty if none."""
-    step = float(np.median(np.diff(t)))
-    if not step > 0.0:
-        return np.zeros(0)
-    step = max(step, float(np.ptp(t)) / (MAX_ROWS_RATIO * len(t)))
-    return np.asarray(t[0] + step * np.arange(round(float(np.ptp(t)) / step) + 1))
-
-
-def _at_times(t: Array, rows: Array, values: Array, config: ChecksConfig) -> Array:
-    """Values (N,) between neighbouring samples of a column at times t; nan in its gaps."""
-    sampled = np.isfinite(values)
-    own, measured = rows[sampled], values[sampled]
-    after = np.searchsorted(own, t).clip(1, len(own) - 1)
-    longest = config.rates_max_gap * float(np.median(np.diff(own)))
-    tolerance = 1e-6 * longest
-    within = (t >= own[0] - tolerance) & (t <= own[-1] + tolerance)
-    within &= own[after] - own[after - 1] <= longest
-    return np.where(within, np.interp(t, own, measured), np.nan)
 
 
 def _rates_of_poses(t: Array, columns: dict[str, Array], k: int) -> dict[str, Array]:
@@ -140,24 +122,12 @@ def _rates_of_poses(t: Array, columns: dict[str, Array], k: int) -> dict[str, Ar
             moved[name] = (columns[name][rows + k] - columns[name][rows - k]) / span
     rates = {"r_radps": moved["psi_rad"]}
     if "x_m" in moved and "y_m" in moved:
-        psi = _moving_average(columns["psi_rad"], k)[rows]
+        psi = moving_average(columns["psi_rad"], k)[rows]
         c = np.cos(psi)
         s = np.sin(psi)
         rates["u_mps"] = c * moved["x_m"] + s * moved["y_m"]
         rates["v_mps"] = c * moved["y_m"] - s * moved["x_m"]
     return rates
-
-
-def _moving_average(values: Array, k: int) -> Array:
-    """Mean (N,) over k values on either side, nan where one is missing; both ends are unchanged."""
-    missing = ~np.isfinite(values)
-    total = np.concatenate(([0.0], np.cumsum(np.where(missing, 0.0, values))))
-    absent = np.concatenate(([0], np.cumsum(missing)))
-    mean = values.copy()
-    width = 2 * k + 1
-    inside = (total[width:] - total[:-width]) / width
-    mean[k:-k] = np.where(absent[width:] > absent[:-width], np.nan, inside)
-    return mean
 
 
 def _compare(compared: _Comparison, vessel: Vessel, config: ChecksConfig) -> list[Finding]:

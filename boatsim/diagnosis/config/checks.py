@@ -810,6 +810,33 @@ class ChecksConfig:
     rates_min_difference: float = setting(
         0.02, "1", "Mean square difference, relative to the rate, that needs an explanation."
     )
+    sensor_delay_rows: int = setting(
+        600,
+        "count",
+        "Times at which the delays of sensors are compared; more cost time only.",
+        low=60,
+    )
+    sensor_delay_min_share: float = setting(
+        0.5, "1", "Share of these times at which all compared sensors are known.", high=1.0
+    )
+    sensor_delay_grid: int = setting(
+        10, "count", "Delays on either side of zero that are tried before the refinement.", low=2
+    )
+    sensor_delay_intervals: int = setting(
+        16,
+        "count",
+        "Intervals of a recording whose scores scatter; each has several turns of the vessel.",
+        low=4,
+    )
+    sensor_delay_min_intervals: float = setting(
+        0.6,
+        "intervals",
+        "Smallest delay that is reported, in intervals of the sensor; values that a logger holds "
+        "until the next are half an interval old on average.",
+    )
+    sensor_delay_sds: float = setting(
+        5.0, "sd", "Deviation from zero from which a sensor counts as late.", low=2.0
+    )
     clock_stretch_rows: int = setting(
         20,
         "count",

@@ -79,6 +79,66 @@ def test_a_delay_is_found_in_rows_with_empty_cells(late: tuple[str, ...]) -> Non
         assert change.delay == pytest.approx(LATE, abs=STEP)
 
 
+SENSOR_ROWS = [  # rows from one sample of a sensor to the next
+    {},
+    {"x_m": 4, "y_m": 4, "u_mps": 4, "v_mps": 4, "psi_rad": 2},
+]
+
+
+def log_with_delays(late: dict[str, float], rows: dict[str, int], seed: int = 0) -> Recording:
+    """Rows at 10 Hz of sensors with intervals and delays of their own [s]."""
+    rng = np.random.default_rng(seed)
+    t = STEP * np.arange(900)
+    signals = {}
+    for name in true_motion(t[:1]):
+        values = true_motion(t - late.get(name, 0.0))[name] + 0.003 * rng.standard_normal(len(t))
+        signals[name] = np.where(np.arange(len(t)) % rows.get(name, 1) == 0, values, np.nan)
+    return Recording("log", t, signals)
+
+
+@pytest.mark.parametrize("rows", SENSOR_ROWS)
+@pytest.mark.parametrize(
+    ("columns", "delay"),
+    [
+        (("r_radps",), 0.4),
+        (("r_radps",), -0.4),
+        (("psi_rad",), 0.4),
+        (("x_m", "y_m"), 0.4),
+        (("x_m", "y_m"), -0.35),
+        (("u_mps", "v_mps"), 0.43),
+        (("x_m", "y_m", "psi_rad"), 0.4),
+        (("u_mps", "v_mps", "r_radps"), 0.4),
+    ],
+)
+def test_each_late_sensor_is_reported_once_with_its_delay(
+    columns: tuple[str, ...], delay: float, rows: dict[str, int]
+) -> None:
+    log = log_with_delays(dict.fromkeys(columns, delay), rows)
+    [found] = check_recorded_rates(log, BOAT, DEFAULT.checks)
+    assert found.name == "velocity_late"
+    assert tuple(change.column for change in found.changes) == columns
+    sd = float(found.evidence.split(" +- ")[1].split(" s ")[0])
+    assert 0.0 < sd < 0.04
+    for change in found.changes:
+        assert change.delay == pytest.approx(delay, abs=4.0 * sd)
+
+
+def test_sensors_with_two_delays_are_reported_with_each() -> None:
+    late = {"x_m": 0.4, "y_m": 0.4, "psi_rad": 0.8}
+    found = check_recorded_rates(log_with_delays(late, {}), BOAT, DEFAULT.checks)
+    delays = {change.column: change.delay for one in found for change in one.changes}
+    assert delays == pytest.approx(late, abs=0.03)
+    assert len(found) == 2
+
+
+def test_an_antenna_elsewhere_is_no_delay() -> None:
+    log = log_with_delays({}, {})
+    psi = log["psi_rad"]
+    moved = changed(log, x_m=log["x_m"] + 0.4 * np.cos(psi), y_m=log["y_m"] + 0.4 * np.sin(psi))
+    found = check_recorded_rates(moved, BOAT, DEFAULT.checks)
+    assert [one.name for one in found] == ["velocity_elsewhere"]
+
+
 def test_a_turn_that_no_heading_sensor_saw_is_no_fault() -> None:
     """The heading is missing for 10 s, in which its change is that of the yaw rate."""
     log = log_of_sensors(2)
