@@ -136,8 +136,11 @@ RESTS = {  # effects that are not always there
     "drag_growth",  # at its begin
     "dragged_propeller",  # with the way
     "drive_fade",  # at the begin of a run
+    "heave_radiation",  # after rest
+    "pitch_radiation",  # after rest
     "push",  # before its time and after
     "quay",  # away from the wall
+    "roll_radiation",  # after rest
     "rudder_race",  # of a propeller that backs
     "thrust_fade",  # at the begin of a run
     "ventilation",  # deep below the surface
