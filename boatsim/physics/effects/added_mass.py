@@ -245,8 +245,8 @@ class AddedMassError(CoefficientRelease):
 
     formula: ClassVar[str] = (
         r"X_{\dot u} = k_u X_{\dot u}^0, \quad Y_{\dot v} = k_v Y_{\dot v}^0, \quad "
-        r"N_{\dot r} = k_r N_{\dot r}^0, \quad Z_{\dot w} = k_w Z_{\dot w}^0, \quad M_{\dot q} = k_q "
-        r"M_{\dot q}^0"
+        r"N_{\dot r} = k_r N_{\dot r}^0, \quad Z_{\dot w} = k_w Z_{\dot w}^0, \quad "
+        r"M_{\dot q} = k_q M_{\dot q}^0"
     )
     symbols: ClassVar = {
         "surge_factor": "k_u",

@@ -1,9 +1,11 @@
-"""Radiation force of one axis: damping and added mass that depend on the frequency of the motion."""
+"""Radiation force of one axis: damping and added mass that depend on the frequency."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from boatsim.physics.base import (
     Array,
@@ -16,8 +18,8 @@ from boatsim.physics.base import (
 )
 from boatsim.physics.coefficients.memory_step import oscillator_factors
 
-# floats of the memory: place and rate of the oscillator; speeds at the begin of the last step and of
-# the one before, and the lengths of both; factors of a whole step and of its first half
+# floats of the memory: place and rate of the oscillator; speeds at the begin of the last step and
+# of the one before, and the lengths of both; factors of a whole step and of its first half
 PLACE, RATE, SPEED, EARLIER, LAST, BEFORE, WHOLE, HALF, STATES = 0, 1, 2, 3, 4, 5, 6, 16, 26
 # Shortest earlier step, in steps, from which the curvature of the speed is taken: a difference of
 # speeds over a shorter one contains mostly the corrections of a filter.
@@ -240,7 +242,7 @@ class HeaveRadiation(MotionMemory):
         """Number of floats stored from step to step: speed, oscillator and factors of a step."""
         return STATES
 
-    def response(self, frequency: Array) -> Array:
+    def response(self, frequency: Array) -> NDArray[np.complex128]:
         """Return the force per speed of a harmonic motion, with the sign of a damping.
 
         Args:
@@ -251,8 +253,7 @@ class HeaveRadiation(MotionMemory):
             over the frequency the added mass.
         """
         w, a = frequency, 2.0 * self.damping_ratio * self.frequency
-        found: Array = self.damping * 1j * a * w / (self.frequency**2 - w**2 + 1j * a * w)
-        return found
+        return self.damping * 1j * a * w / (self.frequency**2 - w**2 + 1j * a * w)
 
 
 def parameters_of_axis(axis: str, spread: float) -> dict[str, ParameterChanges]:
@@ -262,7 +263,7 @@ def parameters_of_axis(axis: str, spread: float) -> dict[str, ParameterChanges]:
         axis: The axis, "roll" for example.
         spread: Prior standard deviation of the damping [N m s].
     """
-    damping = {
+    damping: ParameterChanges = {
         "unit": "N m s",
         "words": f"largest damping in {axis}, at the frequency `frequency`",
         "spread": spread,

@@ -63,8 +63,8 @@ class Effect(CheckedParameters):
     # parameter -> number of the vessel to which it adds, as the mass of a load to "body.mass": if a
     # vessel file calls that number estimated, a load within its uncertainty is a better value of it
     adds_to: ClassVar[Mapping[str, str]] = {}
-    # parameter -> coefficient of the vessel, in the same unit, whose fit contains it where the effect
-    # is missing, as a linear damping contains that by waves at the frequency of the recordings
+    # parameter -> coefficient of the vessel, in the same unit, whose fit contains it where the
+    # effect is missing, as a linear damping contains that by waves
     contained_in: ClassVar[Mapping[str, str]] = {}
     # whether it acts from the surroundings, as wind does: the vessel does not limit its size
     of_surroundings: ClassVar[bool] = False

@@ -138,8 +138,11 @@ RESTS = {  # effects that are not always there
     "drive_fade",  # at the begin of a run
     "drive_hull_interaction",  # with the race directed away from the hull
     "drive_ventilation",  # deep below the surface
+    "heave_radiation",  # after rest
+    "pitch_radiation",  # after rest
     "push",  # before its time and after
     "quay",  # away from the wall
+    "roll_radiation",  # after rest
     "rudder_race",  # of a propeller that backs
     "thrust_fade",  # at the begin of a run
     "ventilation",  # deep below the surface

@@ -111,6 +111,9 @@ def test_each_effect_acts_in_its_own_axis_alone() -> None:
         found = python_function(kind.law)(motion, values, act, 0, 0, act, 0)
         assert {name for name in found._fields if getattr(found, name)} == {axis}
         assert getattr(found, axis) == -5.0
+        turned = make_motion(w=-1.0, p=-1.0, q=-1.0)
+        image = python_function(kind.law)(turned, values, -act * [1.0, -1.0], 0, 0, act, 0)
+        assert getattr(image, axis) == 5.0
 
 
 # ---- vessels
