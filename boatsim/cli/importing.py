@@ -11,6 +11,8 @@ from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import ChannelEffect
 from boatsim.physics.content import vessel_reference
+from boatsim.physics.effects.measured_relative_wind import MeasuredRelativeWind
+from boatsim.physics.effects.measured_wind import MeasuredWind
 from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.vessel import Vessel
@@ -18,7 +20,7 @@ from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import propose_map
+from boatsim.recordings.importing.mapping_proposal import propose_map, track_and_heading
 from boatsim.recordings.importing.recording_notes import (
     position_fix_type,
     recording_notes_text,
@@ -28,8 +30,11 @@ from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
 from boatsim.recordings.importing.signal_listing import signal_table
 from boatsim.recordings.importing.supply_currents import supply_current_lines
-from boatsim.recordings.importing.unnamed_inputs import unnamed_input_lines
+from boatsim.recordings.importing.unnamed_inputs import supply_inputs, unnamed_input_lines
 from boatsim.recordings.importing.voltages import voltage_lines
+from boatsim.recordings.importing.wind_evidence import APPARENT, TRUE
+from boatsim.recordings.importing.wind_inputs import USUAL, WindRole, unnamed_wind, wind_lines
+from boatsim.recordings.importing.winds import Wind, winds_of_log
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import read, write_csv
 from boatsim.simulate.manoeuvre import approach_speed
@@ -97,7 +102,11 @@ def _propose_map(
             drives.append(_vessel_channel(boat, channel, low, high))
         speed = partial(_speed_ahead, boat)
         text = propose_map(log, vessel, drives, boat.dof, boat.columns, speed, boat.turns_over)
-        text += _measured_lines(boat, log) + unnamed_input_lines(boat.measured, log)
+        roles = _wind_roles(boat)
+        winds = winds_of_log(log, *track_and_heading(log, body))
+        text += _measured_lines(boat, log, roles, winds)
+        new = [*supply_inputs(boat.measured, log), *unnamed_wind(roles, winds)]
+        text += unnamed_input_lines(new, log)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -151,7 +160,22 @@ def _speed_ahead(boat: Vessel) -> float:
         return 0.0
 
 
-def _measured_lines(boat: Vessel, log: Log) -> str:
+def _wind_roles(boat: Vessel) -> dict[str, WindRole]:
+    """Measured quantities of a vessel that are of a wind, by its effects or their usual names."""
+    roles = {name: role for name, role in USUAL.items() if name in boat.measured}
+    for effect in boat.effects:
+        if not isinstance(effect, MeasuredWind):
+            continue
+        frame = APPARENT if isinstance(effect, MeasuredRelativeWind) else TRUE
+        for role, channel in boat.bindings(effect).items():
+            if channel in boat.measured:
+                roles[str(channel)] = WindRole(frame, role)
+    return roles
+
+
+def _measured_lines(
+    boat: Vessel, log: Log, roles: Mapping[str, WindRole], winds: Sequence[Wind]
+) -> str:
     """Lines of a proposed map for the measured inputs of a vessel, at the end of its columns."""
     lines = ""
     for name, about in boat.measured.items():
@@ -164,6 +188,9 @@ def _measured_lines(boat: Vessel, log: Log) -> str:
             continue
         if unit_of(name) == "A":
             lines += supply_current_lines(name, words, about.neutral, log)
+            continue
+        if name in roles:
+            lines += wind_lines(name, words, roles, winds)
             continue
         lines += f'# {name} = "..."  # CHECK: {words}\n'
         if name.endswith("_m"):

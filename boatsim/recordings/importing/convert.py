@@ -49,6 +49,20 @@ from boatsim.recordings.importing.several_logs import align_clocks, file_spans
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.table import Recording, is_command
 
+UNBOUNDED = (-np.inf, np.inf)  # range of a measured direction, and of a drive that turns around
+
+
+def unwrapped(values: Array) -> Array:
+    """Return angles (N,) [rad] that go on across a full turn, so that their means are right.
+
+    Args:
+        values: Angles (N,) [rad]; nan where none was measured.
+    """
+    known = np.isfinite(values)
+    smooth = np.array(values, dtype=float)
+    smooth[known] = np.unwrap(smooth[known])
+    return smooth
+
 
 def convert_log(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
@@ -79,6 +93,8 @@ def convert_log(
     for name, what in map.columns.items():
         t, values = column_values(work, name, what)
         t = t - map.latency.get(name, 0.0)
+        if name.endswith("_rad") and work.channels.get(name) == UNBOUNDED:
+            values = unwrapped(values)
         known = np.isfinite(values)  # of a table whose sensors share the rows
         disorder.setdefault(count_unordered_samples(t[known]), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
