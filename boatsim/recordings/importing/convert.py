@@ -17,6 +17,7 @@ from boatsim.recordings.importing.conversion_remarks import (
     remark_times,
 )
 from boatsim.recordings.importing.conversion_state import HELD, Column, ConversionState
+from boatsim.recordings.importing.currents import current_columns
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.log_times import with_continued_clocks, with_time_of_map
 from boatsim.recordings.importing.mapping import Map
@@ -123,6 +124,8 @@ def convert_log(
     rows, signals = complete_rows(work, rows, signals)
     for name, probes in map.waves.items():
         signals[name] = np.interp(rows, *wave_values(work, name, probes))
+    if map.current:
+        signals |= current_columns(work, rows, signals, map.current)
     remark_spans(work, rows)
     remark_times(work, rows)
     return Recording(

@@ -54,26 +54,26 @@ def supply_inputs(measured: Collection[str], log: Log) -> list[NewInput]:
         NewInput("battery_V", "voltage of the supply", voltage_inputs(log), 50.0),
         NewInput("battery_A", "current of the supply", supply_current_inputs(log), LARGE),
     )
-    return [one for one in new if unit_of(one.column) not in units]
+    return [one for one in new if one.found and unit_of(one.column) not in units]
 
 
 def unnamed_input_lines(new: Sequence[NewInput], log: Log) -> str:
     """Return comments that state what to add to a vessel's file and to the map.
 
     Args:
-        new: Inputs that the vessel's file does not name.
+        new: Inputs that the log has and the vessel's file does not name; one without signals is
+            made by a table of the map.
         log: The log.
 
     Returns:
-        The lines; "" if the log has none of them.
+        The lines; "" for none.
     """
     tables, lines = "", ""
     for one in new:
-        if not one.found:
-            continue
-        text = lines_of_input(one.column, one.about, one.found, SUPPLY)
-        for line in text.splitlines():
-            lines += f"# {line.removeprefix('# ')}\n"
+        if one.found:
+            text = lines_of_input(one.column, one.about, one.found, SUPPLY)
+            for line in text.splitlines():
+                lines += f"# {line.removeprefix('# ')}\n"
         about = f"about = {toml_value(one.about)} }}"
         if one.percentile is None:
             tables += f"# {toml_key(one.column)} = {{ {about}\n"
@@ -83,9 +83,12 @@ def unnamed_input_lines(new: Sequence[NewInput], log: Log) -> str:
             f"# {toml_key(one.column)} = {{ neutral = {nominal:.3g}, {about}  # neutral: the "
             "nominal value\n"
         )
-    if not lines:
+    if not tables:
         return ""
-    return f"\n{HEADING}\n# [measured]\n{tables}# and use these lines here:\n{lines}"
+    text = f"\n{HEADING}\n# [measured]\n{tables}"
+    if lines:
+        text += f"# and use these lines here:\n{lines}"
+    return text
 
 
 def _percentile(one: NewInput, share: float, log: Log) -> float:

@@ -4,6 +4,7 @@ A wind aboard contains the velocity of the boat. In the right unit the differenc
 over ground that is nearly steady, while the boat turns and changes its speed.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +88,29 @@ def wind_evidence(
     if frame:
         return WindEvidence(frame, False, _unit(usual))
     return WindEvidence()
+
+
+def water_speed_unit(
+    speed: Classification, track: Track | None, heading: Classification | None
+) -> str | None:
+    """Return the unit of a speed through the water by the motion of the boat; None if unknown.
+
+    The water, like the air, moves nearly steadily over ground: its velocity is that of the boat
+    less the recorded speed along the bow.
+
+    Args:
+        speed: Speed through the water, ahead, in the unit of the log.
+        track: Motion by the positions; None if unknown.
+        heading: The heading; None if unknown.
+    """
+    if track is None or not track.moves or heading is None:
+        return None
+    ahead = replace(speed, signal=replace(speed.signal, values=0.0 * speed.signal.values))
+    pieces = _common_values(speed, ahead, track, heading)
+    if pieces is None:
+        return None
+    strength, _, velocity, bow, count = pieces
+    return _unit(_reading(APPARENT, False, strength * np.exp(1j * bow), velocity, count))
 
 
 def _common_values(

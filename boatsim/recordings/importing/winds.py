@@ -10,8 +10,8 @@ from boatsim.recordings.importing.signal_classification import (
     NOT_MEASURED,
     Classification,
 )
-from boatsim.recordings.importing.signal_units import unit_word
-from boatsim.recordings.importing.signal_words import WORDS, tokenize_name
+from boatsim.recordings.importing.signal_units import stated_speed_unit, unit_word
+from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.track import Track
 from boatsim.recordings.importing.wind_evidence import APPARENT, TRUE, wind_evidence
 
@@ -24,7 +24,6 @@ ANGLES = {"angle", "direction", "dir", "from", "awa", "twd", "deg", "rad", "bear
 WINDS = {"wind", "aws", "awa", "tws", "twd", "anemometer"}
 # words of other quantities: a true wind relative to the bow, gusts, forecasts, north and east
 OTHER = {"twa", "gust", "forecast", "mean", "x", "y", "north", "east", "chill", "temperature"}
-SI_SPEEDS = {"m/s", "mps"}
 LARGEST_ANGLE = 2.0 * np.pi + 0.3  # [rad] a larger number is in degrees
 ASK_UNIT = "the unit of the speed is not stated: add * kn or * kmh unless it is m/s"
 ASK_FRAME = "names and motion do not show whether it is relative to the bow or to north"
@@ -107,7 +106,7 @@ def _wind(
     speed: str, angle: str, log: Log, track: Track | None, heading: Classification | None
 ) -> Wind:
     notes, questions = [], []
-    unit, is_stated = _stated_speed_unit(speed, log.signals[speed])
+    unit, is_stated = stated_speed_unit(speed, log.signals[speed])
     of_angle = unit_word(angle, log.signals[angle])
     if not of_angle and not set(tokenize_name(angle)) & {"rad"}:
         known = log.signals[angle].values
@@ -141,11 +140,3 @@ def _wind(
         notes,
         questions,
     )
-
-
-def _stated_speed_unit(name: str, signal: Signal) -> tuple[str, bool]:
-    """The unit of a speed as a word of expressions, and whether format or name state it."""
-    word = unit_word(name, signal)
-    words = tokenize_name(name)
-    is_stated = bool(word) or signal.unit.lower() in WORDS or bool(set(words) & SI_SPEEDS)
-    return word, is_stated
