@@ -249,7 +249,7 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
         if _is_error_of_one_of_few(kind, vessel, fewest):
             yield from _sources_of_single_ones(name, kind, vessel, True)
         else:
-            yield _Source({"use": name}, kind, True)
+            yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, True)
 
 
 def _sources_of_single_ones(
@@ -259,8 +259,7 @@ def _sources_of_single_ones(
     if kind.jointly:
         yield _Source({"use": name}, kind, requested)
         return
-    measured = _measured_sources(kind, vessel)
-    fed_by = dict(zip(measured.get("on", ()), measured.get("fed_by", ()), strict=True))
+    fed_by = _measurements_by_actuator(kind, vessel)
     for one in single_subjects(kind, vessel):
         table: dict[str, object] = {"use": name, "name": f"{name}_{one}", "on": [one]}
         if one in fed_by:
@@ -274,18 +273,25 @@ def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> 
     return several and not has_single_candidates(kind, vessel, fewest)
 
 
-def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, list[str]]:
-    """Settings that bind a channel effect to the measured quantities that feed it, if it needs any.
+def _measured_sources(kind: type[Effect], vessel: Vessel) -> dict[str, object]:
+    """Settings that bind an effect to the measured quantities that it takes, if it needs any.
 
     They are empty where the vessel measures none that matches.
     """
-    if not issubclass(kind, ChannelEffect) or not kind.measured_unit:
-        return {}
-    actuators = vessel.target_actuators(instantiate_neutral_effect(kind))
-    found = vessel.matching_measurements(actuators, kind.measured_unit)
+    if kind.recorded_as and not set(kind.recorded_as.values()) - set(vessel.measured):
+        return {"on": dict(kind.recorded_as)}
+    found = _measurements_by_actuator(kind, vessel)
     if not found:
         return {}
     return {"on": list(found), "fed_by": list(found.values())}
+
+
+def _measurements_by_actuator(kind: type[Effect], vessel: Vessel) -> dict[str, str]:
+    """The measured quantity that feeds a channel effect, by actuator; empty if it needs none."""
+    if not issubclass(kind, ChannelEffect) or not kind.measured_unit:
+        return {}
+    actuators = vessel.target_actuators(instantiate_neutral_effect(kind))
+    return dict(vessel.matching_measurements(actuators, kind.measured_unit))
 
 
 def single_subjects(kind: type[Effect], vessel: Vessel) -> list[str]:
@@ -344,10 +350,13 @@ def _unrecorded_columns(kind: type[Effect], columns: Sequence[str] | None) -> st
 
 
 def _unrecorded_sources(effect: Effect, columns: Sequence[str] | None) -> str:
-    """The measured quantities that feed a channel effect, if they were not recorded, in words."""
-    if columns is None or not isinstance(effect, ChannelEffect) or not type(effect).measured_unit:
+    """The measured quantities that an effect takes, if they were not recorded, in words."""
+    if columns is None:
         return ""
-    missing = [name for name in dict.fromkeys(effect.fed_by) if name not in columns]
+    sources = tuple(type(effect).recorded_as.values())
+    if isinstance(effect, ChannelEffect) and type(effect).measured_unit:
+        sources = tuple(effect.fed_by)
+    missing = [name for name in dict.fromkeys(sources) if name not in columns]
     if not missing:
         return ""
     return f"no column {' and '.join(missing)} was recorded"
@@ -413,12 +422,15 @@ def missing_requirements(
             f"no measured quantity in {kind.measured_unit} is in [measured], or none can be "
             "assigned to each drive by its name"
         )
+    if kind.recorded_as and not table.get("on"):
+        return f"{' and '.join(kind.recorded_as.values())} are not in [measured]"
     try:
         found = instantiate_candidate(kind, vessel, facts, table)
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
+    usable = {*vessel.roles, *(vessel.measured if kind.recorded_as else ())}
     for role, channel in vessel.specified_inputs(found).items():
-        if isinstance(channel, str) and channel not in vessel.roles:
+        if isinstance(channel, str) and channel not in usable:
             return f"on.{role} = {channel}, which no effect of the vessel itself uses"
     if not requested and (reason := found.missing_for_test(vessel)):
         return reason

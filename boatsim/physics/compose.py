@@ -49,6 +49,26 @@ def effect_kinds() -> tuple[type[EffectKind], ...]:
     return tuple(found)
 
 
+def further_readings(vessel: Vessel, effects: Sequence[Effect]) -> dict[str, bool]:
+    """Return the measured channels that candidates use and no effect of the vessel itself.
+
+    Their signals follow those of the vessel, whose places do not depend on the candidates.
+
+    Args:
+        vessel: The vessel.
+        effects: The vessel's own effects, then candidates.
+
+    Returns:
+        Name of the channel -> whether it is an angle.
+    """
+    found: dict[str, bool] = {}
+    for effect in effects:
+        for role, channel in vessel.specified_inputs(effect).items():
+            if channel in vessel.measured and channel not in vessel.readings:
+                found[str(channel)] = type(effect).roles[role].unit == "rad"
+    return found
+
+
 class Composition:
     """Composes the source of a vessel's program that calls the laws of all its effects.
 
@@ -74,11 +94,17 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.table_offsets = tuple(table_offsets)
         self.effects = tuple(effects)
-        self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
+        further = further_readings(vessel, self.effects)
+        self.signals = (*vessel.actuators, *vessel.readings, *further)
+        self.commands = vessel.inputs
         self.signal_sums: Mapping[str, Sequence[str]] = {}
         if any(type(e).sees_held and not isinstance(e, MotionMemory) for e in self.effects):
             self.signal_sums = vessel.signal_sums
         held = [*vessel.law_signals, *self.signal_sums]
+        for name, is_angle in further.items():
+            held.append(name)
+            if is_angle:
+                held += [f"cos_{name}", f"sin_{name}"]
         self._own: dict[int, int] = {}
         for i, effect in enumerate(self.effects):
             if isinstance(effect, SignalHistory) and self._may_use_history(i, effect):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.physics.vessel import Vessel
+from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 
@@ -16,11 +17,12 @@ def unwrap_directions(recording: Recording, vessel: Vessel) -> Recording:
 
     Args:
         recording: The recording.
-        vessel: The vessel, which lists its measured directions (`environment_angles`) and the
-            directions of its drives (`full_turns`).
+        vessel: The vessel, which lists the directions of its drives (`full_turns`). Its measured
+            quantities in rad are directions.
     """
     signals = dict(recording.signals)
-    for name in (*vessel.environment_angles, *vessel.full_turns):
+    directions = [name for name in vessel.measured if unit_of(name) == "rad"]
+    for name in dict.fromkeys((*vessel.environment_angles, *directions, *vessel.full_turns)):
         if name in signals:
             signals[name] = np.unwrap(recording[name])
     return replace(recording, signals=signals)

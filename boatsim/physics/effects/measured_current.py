@@ -30,7 +30,9 @@ class MeasuredCurrent(WaterFlow):
 
     All hydrodynamic forces act on the velocity relative to it. A log that measures the velocity
     through the water gives the current as the velocity over ground less that through the water, in
-    directions of the earth. Its noise shakes the water of the model: filter it before.
+    directions of the earth. Its noise shakes the water of the model: filter it before. A diagnosis
+    tests it for a vessel that names `current_north_mps` and `current_east_mps` in [measured], if
+    they are recorded.
 
     A reading holds until the next one. The current is taken to change slowly: no force of its
     acceleration acts, and waves travel on still water. The acceleration of a current that is known
@@ -54,6 +56,8 @@ class MeasuredCurrent(WaterFlow):
         "north": Role("m/s", "velocity of the water along x (north)"),
         "east": Role("m/s", "velocity of the water along y (east)"),
     }
+    recorded_as: ClassVar = {"north": "current_north_mps", "east": "current_east_mps"}
+    alone: ClassVar[bool] = True
     varies: ClassVar[bool] = True
     water_velocity: ClassVar = water_velocity
 
@@ -63,7 +67,10 @@ class MeasuredCurrent(WaterFlow):
         high=10.0,
         unit="",
         words="velocity of the water over the recorded one",
+        fit=True,
+        spread=1.0,
         calibrates="current",
+        in_per_cent="the current is {share} of the measured one",
     )
 
     def velocity_at(self, t: float, x: float, y: float) -> tuple[float, float]:

@@ -32,7 +32,8 @@ class MeasuredRelativeWind(MeasuredWind):
     X = 0.5 rho front U^2 cos g,  Y = 0.5 rho side U^2 sin g,  N = (arm + swing cos g) Y
 
     U is the measured speed [m/s], g the direction the air moves to, from the bow. Parameters are
-    those of `measured_wind`.
+    those of `measured_wind`. A diagnosis tests it for a vessel that names `apparent_wind_mps` and
+    `apparent_wind_from_rad` in [measured], if they are recorded.
     """
 
     formula: ClassVar[str] = (
@@ -48,6 +49,10 @@ class MeasuredRelativeWind(MeasuredWind):
         "density": r"\rho",
     }
 
+    recorded_as: ClassVar = {
+        "speed": "apparent_wind_mps",
+        "comes_from": "apparent_wind_from_rad",
+    }
     # the reading is relative to the hull, so no frame of reference is needed
     tied_to: ClassVar[str] = ""
     law: ClassVar = law

@@ -37,8 +37,9 @@ class MeasuredWind(Force):
     X = 0.5 rho front U^2 cos g,  Y = 0.5 rho side U^2 sin g,  N = (arm + swing cos g) Y
 
     U is the speed of the air past the hull, g the direction it moves to, from the bow. `front` and
-    `side` are areas times drag coefficients. For a regression with C_N = N1 sin g + N2 sin 2g over
-    length L and side area: arm = N1 L / C_Y and swing = 2 N2 L / C_Y.
+    `side` are areas times drag coefficients. A diagnosis tests it for a vessel that names
+    `wind_mps` and `wind_from_rad` in [measured], if they are recorded. For a regression with C_N =
+    N1 sin g + N2 sin 2g over length L and side area: arm = N1 L / C_Y and swing = 2 N2 L / C_Y.
     """
 
     formula: ClassVar[str] = (
@@ -67,11 +68,30 @@ class MeasuredWind(Force):
         "comes_from": Role("rad", "direction the wind comes from, clockwise from the x axis"),
     }
 
+    recorded_as: ClassVar = {"speed": "wind_mps", "comes_from": "wind_from_rad"}
+    alone: ClassVar[bool] = True
+    strength: ClassVar = ("front", "side")
+    starts: ClassVar = ({"front": 0.03, "side": 0.1},)
+
     front: float = param(
-        0.021, low=0.0, high=5000.0, unit="m^2", words="frontal drag area", calibrates="wind"
+        0.021,
+        low=0.0,
+        high=5000.0,
+        unit="m^2",
+        words="frontal drag area",
+        calibrates="wind",
+        fit=True,
+        spread=0.08,  # 0.9 x 0.3 B^2 of a boat whose superstructure is wide and high
     )
     side: float = param(
-        0.114, low=0.0, high=20000.0, unit="m^2", words="lateral drag area", calibrates="wind"
+        0.114,
+        low=0.0,
+        high=20000.0,
+        unit="m^2",
+        words="lateral drag area",
+        calibrates="wind",
+        fit=True,
+        spread=0.16,  # 0.9 x 0.3 L B
     )
     arm: float = param(
         0.0,
@@ -80,6 +100,9 @@ class MeasuredWind(Force):
         unit="m",
         words="lever of the side force, ahead of the origin",
         calibrates="wind",
+        fit=True,
+        spread=0.1,
+        within=(-0.6, 0.6),
     )
     swing: float = param(
         0.0,
@@ -88,6 +111,9 @@ class MeasuredWind(Force):
         unit="m",
         words="additional lever with the wind from astern",
         calibrates="wind",
+        fit=True,
+        spread=0.1,
+        within=(-0.6, 0.6),
     )
     density: float = param(
         AIR_DENSITY, low=0.5, high=2.0, unit="kg/m^3", words="density of the air"

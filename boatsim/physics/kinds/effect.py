@@ -83,6 +83,9 @@ class Effect(CheckedParameters):
     thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}
     # signals that the law takes as its third argument, each bound to a channel
     roles: ClassVar[Mapping[str, Role]] = {}
+    # role -> usual column of the measured quantity that it takes: the effect is a candidate for a
+    # vessel that names all of these in [measured]
+    recorded_as: ClassVar[Mapping[str, str]] = {}
     # results of the filter of its first role, which its law receives as further signals
     filtered: ClassVar[tuple[str, ...]] = ()
     filter_states: ClassVar[int] = 0  # of that filter

@@ -17,6 +17,7 @@ from boatsim.recordings.importing.conversion_remarks import (
     remark_times,
 )
 from boatsim.recordings.importing.conversion_state import HELD, Column, ConversionState
+from boatsim.recordings.importing.currents import current_columns
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.log_times import with_continued_clocks, with_time_of_map
 from boatsim.recordings.importing.mapping import Map
@@ -49,6 +50,20 @@ from boatsim.recordings.importing.several_logs import align_clocks, file_spans
 from boatsim.recordings.notes import Notes
 from boatsim.recordings.table import Recording, is_command
 
+UNBOUNDED = (-np.inf, np.inf)  # range of a measured direction, and of a drive that turns around
+
+
+def unwrapped(values: Array) -> Array:
+    """Return angles (N,) [rad] that go on across a full turn, so that their means are right.
+
+    Args:
+        values: Angles (N,) [rad]; nan where none was measured.
+    """
+    known = np.isfinite(values)
+    smooth = np.array(values, dtype=float)
+    smooth[known] = np.unwrap(smooth[known])
+    return smooth
+
 
 def convert_log(
     log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
@@ -79,6 +94,8 @@ def convert_log(
     for name, what in map.columns.items():
         t, values = column_values(work, name, what)
         t = t - map.latency.get(name, 0.0)
+        if name.endswith("_rad") and work.channels.get(name) == UNBOUNDED:
+            values = unwrapped(values)
         known = np.isfinite(values)  # of a table whose sensors share the rows
         disorder.setdefault(count_unordered_samples(t[known]), []).append(name)
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
@@ -107,6 +124,8 @@ def convert_log(
     rows, signals = complete_rows(work, rows, signals)
     for name, probes in map.waves.items():
         signals[name] = np.interp(rows, *wave_values(work, name, probes))
+    if map.current:
+        signals |= current_columns(work, rows, signals, map.current)
     remark_spans(work, rows)
     remark_times(work, rows)
     return Recording(

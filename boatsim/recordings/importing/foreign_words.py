@@ -68,6 +68,7 @@ MEANINGS = {
     "depth": "tiefe wassertiefe profondeur profundidad profondità dybde diepte djup",
     "wind": "vent viento vento vind",
     "direction": "richtung dirección direzione richting retning riktning",
+    "apparent": "scheinbar scheinbarer scheinbare aparente apparente schijnbare tilsynelatende",
     "wind direction": "windrichtung windwinkel vindretning windrichting vindriktning",
     "wind speed": "windgeschwindigkeit windstärke vindstyrke windsnelheid vindhastighet",
     "acceleration": (

@@ -10,6 +10,7 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Table, read_toml, validate_table
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.conversion import Allocation, Curve, Range, map_conversion_of
+from boatsim.recordings.importing.water_speed_table import WaterSpeed
 from boatsim.recordings.importing.waves import WaveProbes
 from boatsim.recordings.notes import MAX_LATENCY
 
@@ -55,6 +56,7 @@ class Map(Table):
         columns: Column -> expression of a signal, its `Range` or `Curve`, or the `Allocation` of
             several signals.
         waves: Column -> probes from which the wave at the hull follows.
+        current: Speed through the water from which the current follows.
     """
 
     about: str = ""
@@ -67,6 +69,7 @@ class Map(Table):
     position: Position | None = None
     columns: dict[str, str | Range | Curve | Allocation] = {}
     waves: dict[str, WaveProbes] = {}
+    current: WaterSpeed | None = None
 
     @field_validator("columns", mode="before")
     @classmethod
@@ -116,6 +119,9 @@ class Map(Table):
         for name in self.waves:
             if name in self.columns:
                 raise ValueError(f"columns.{name} is what waves makes; leave it out")
+        for name in (self.current.north, self.current.east) if self.current else ():
+            if name in self.columns:
+                raise ValueError(f"columns.{name} is what current makes; leave it out")
         known = set(self.columns)
         if self.position:
             known |= set(COMPUTED[1:])

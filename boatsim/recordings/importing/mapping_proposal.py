@@ -27,7 +27,7 @@ from boatsim.recordings.importing.signal_text import expression_of, printable_na
 from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.single_axis import names_load
 from boatsim.recordings.importing.time_lines import begin_lines, rate_lines, time_lines
-from boatsim.recordings.importing.track import reason_poses_unusable, track_of
+from boatsim.recordings.importing.track import Track, reason_poses_unusable, track_of
 from boatsim.recordings.importing.turning import Turning
 from boatsim.recordings.importing.unnamed_drives import numbered_outputs
 from boatsim.recordings.raw_table import file_error
@@ -108,6 +108,19 @@ def propose_map(
         *further_lines(best, drives, driven, unit),
     ]
     return "\n".join(lines) + "\n"
+
+
+def track_and_heading(log: Log, body: Body) -> tuple[Track | None, Classification | None]:
+    """Return the motion by the positions of a log, and its most probable heading; None if unknown.
+
+    Args:
+        log: The log.
+        body: The vessel.
+    """
+    best: dict[str, list[Classification]] = {}
+    for g in correct_classification_by_motion(classify_signals(log, body), log):
+        best.setdefault(g.column, []).append(g)
+    return track_of(best), next(iter(best.get("psi_rad", [])), None)
 
 
 def _stated_columns(log: Log, stated: Mapping[str, str]) -> tuple[dict[str, str], set[str]]:

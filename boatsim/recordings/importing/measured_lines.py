@@ -16,11 +16,13 @@ class InputSignal(NamedTuple):
         name: Name of the signal.
         expression: Expression that converts it to the unit of the input.
         note: What the owner must check; "" for nothing.
+        is_open: Whether the owner must complete it, so that it is proposed as a comment only.
     """
 
     name: str
     expression: str
     note: str = ""
+    is_open: bool = False
 
 
 def lines_of_input(
@@ -42,6 +44,8 @@ def lines_of_input(
     lines = ""
     for i, one in enumerate(most_probable_first(column, found, preferred)):
         sign = "" if i == 0 else "# or "
+        if one.is_open:
+            sign = "# "
         note = f"{about}; {one.note}" if one.note else about
         lines += f"{sign}{toml_key(column)} = {toml_value(one.expression)}  # CHECK: {note}\n"
     return lines
@@ -59,8 +63,8 @@ def most_probable_first(
     """
     words = set(tokenize_name(column))
 
-    def matches(one: InputSignal) -> int:
+    def matches(one: InputSignal) -> tuple[bool, int]:
         own = set(tokenize_name(one.name))
-        return 2 * len(own & words) + len(own & set(preferred))
+        return not one.is_open, 2 * len(own & words) + len(own & set(preferred))
 
     return sorted(found, key=matches, reverse=True)

@@ -11,6 +11,7 @@ from boatsim.recordings.importing.signal_words import WORDS, tokenize_name
 FULL_CIRCLE = 360.0  # [deg] largest order to a thruster that turns around
 MANY_TURNS = 10.0 * FULL_CIRCLE  # [deg] no heading in whole degrees is counted on as far
 MAX_WHEEL = 1080.0  # [deg] three turns from the middle; a larger number is no angle of a wheel
+SI_SPEEDS = {"m/s", "mps"}
 BY_RANGE = "radians by its range"
 
 
@@ -36,6 +37,18 @@ def unit_word(name: str, signal: Signal) -> str:
     if "rpm" in words:
         return "rpm"
     return WORDS.get(words[-1], "")
+
+
+def stated_speed_unit(name: str, signal: Signal) -> tuple[str, bool]:
+    """Return the unit of a speed as a word of expressions, and whether format or name state it.
+
+    Args:
+        name: Name of the signal.
+        signal: The signal.
+    """
+    word = unit_word(name, signal)
+    in_name = bool(set(tokenize_name(name)) & SI_SPEEDS)
+    return word, bool(word) or signal.unit.lower() in WORDS or in_name
 
 
 def unit_of_angle(

@@ -32,49 +32,68 @@ class NewInput(NamedTuple):
         column: Its column.
         about: Description of the input.
         found: Signals of the log that may be it.
-        percentile: Percentile of the readings that is proposed as the nominal value [%].
+        percentile: Percentile of the readings that is proposed as the nominal value [%]; None for
+            a quantity without one.
     """
 
     column: str
     about: str
     found: Sequence[InputSignal]
-    percentile: float
+    percentile: float | None = None
 
 
-def unnamed_input_lines(measured: Collection[str], log: Log) -> str:
-    """Return comments that state what to add to a vessel's file and to the map.
+def supply_inputs(measured: Collection[str], log: Log) -> list[NewInput]:
+    """Return the voltage and the current of a log that a vessel's file does not name.
 
     Args:
         measured: Measured quantities that the vessel's file names.
         log: The log.
-
-    Returns:
-        The lines; "" if the log has no further input.
     """
     units = {unit_of(name) for name in measured}
     new = (
         NewInput("battery_V", "voltage of the supply", voltage_inputs(log), 50.0),
         NewInput("battery_A", "current of the supply", supply_current_inputs(log), LARGE),
     )
+    return [one for one in new if one.found and unit_of(one.column) not in units]
+
+
+def unnamed_input_lines(new: Sequence[NewInput], log: Log) -> str:
+    """Return comments that state what to add to a vessel's file and to the map.
+
+    Args:
+        new: Inputs that the log has and the vessel's file does not name; one without signals is
+            made by a table of the map.
+        log: The log.
+
+    Returns:
+        The lines; "" for none.
+    """
     tables, lines = "", ""
     for one in new:
-        if unit_of(one.column) in units or not one.found:
+        if one.found:
+            text = lines_of_input(one.column, one.about, one.found, SUPPLY)
+            for line in text.splitlines():
+                lines += f"# {line.removeprefix('# ')}\n"
+        about = f"about = {toml_value(one.about)} }}"
+        if one.percentile is None:
+            tables += f"# {toml_key(one.column)} = {{ {about}\n"
             continue
-        text = lines_of_input(one.column, one.about, one.found, SUPPLY)
-        lines += "".join(f"# {line}\n" for line in text.splitlines())
-        nominal = _nominal(one, log)
+        nominal = _percentile(one, one.percentile, log)
         tables += (
-            f"# {toml_key(one.column)} = {{ neutral = {nominal:.3g}, about = "
-            f"{toml_value(one.about)} }}  # neutral: the nominal value\n"
+            f"# {toml_key(one.column)} = {{ neutral = {nominal:.3g}, {about}  # neutral: the "
+            "nominal value\n"
         )
-    if not lines:
+    if not tables:
         return ""
-    return f"\n{HEADING}\n# [measured]\n{tables}# and use these lines here:\n{lines}"
+    text = f"\n{HEADING}\n# [measured]\n{tables}"
+    if lines:
+        text += f"# and use these lines here:\n{lines}"
+    return text
 
 
-def _nominal(one: NewInput, log: Log) -> float:
+def _percentile(one: NewInput, share: float, log: Log) -> float:
     """A percentile of the readings of the most probable signal, in the unit of the input."""
     best = most_probable_first(one.column, one.found, SUPPLY)[0]
     expression = parse(best.expression, log.signals.keys())
     values = expression.convert(log.signals[expression.signal].values)
-    return float(np.nanpercentile(values, one.percentile))
+    return float(np.nanpercentile(values, share))

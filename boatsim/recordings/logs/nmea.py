@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from boatsim.physics.base import Array
+from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.log import (
     MAX_TEXT_BYTES,
     Log,
@@ -44,11 +45,30 @@ FIELDS: dict[str, dict[str, tuple[str, str]]] = {
     "RSA": {"rudder_starboard": ("rsa_starboard", "deg"), "rudder_port": ("rsa_port", "deg")},
     "RPM": {"shaft": ("speed", "rpm")},
     "VHW": {"speed_water": ("water_speed_knots", "kn")},
+    "VBW": {"speed_water": ("lon_water_spd", "kn")},
+    "MWD": {
+        "true_wind_direction": ("direction_true", "deg"),
+        "true_wind_speed": ("wind_speed_meters", "m/s"),
+    },
+    "MWV": {  # the reference of a sentence selects two of them
+        "apparent_wind_angle": ("wind_angle", "deg"),
+        "apparent_wind_speed": ("wind_speed", "m/s"),
+        "true_wind_angle": ("wind_angle", "deg"),
+        "true_wind_speed": ("wind_speed", "m/s"),
+    },
     "ZDA": {},  # date, and the time if no fix has one
 }
 NUMBERED = {"RPM": "engine_no"}  # sentence -> attribute with the number of the device
 DATE_ONLY = "ZDA"  # its time is that of a fix and may be sent after the next one
-STATUS = {"RMC": "status", "GLL": "status"}  # "A" where the fix is valid
+VALID = "data_validity_water_spd"
+STATUS = {
+    "RMC": "status",
+    "GLL": "status",
+    "MWV": "status",
+    "VBW": VALID,
+}  # "A" where the values are valid
+REFERENCES = {"R": "apparent", "T": "true"}  # of MWV -> first word of its signals
+WIND_UNITS = {"K": UNITS["kmh"], "N": UNITS["kn"], "M": 1.0, "S": UNITS["mph"]}  # -> m/s
 SENTENCE = re.compile(r"[$!][A-Za-z]{1,5}[\w]*,[^\r\n]*")
 # Time of the logger: s or ms since 1970
 STAMP = re.compile(r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])")
@@ -121,6 +141,8 @@ def _sentences(
         if valid:
             for signal, (attribute, _) in FIELDS[name].items():
                 numbers[signal] = _float(sentence, attribute)
+            if name == "MWV":
+                numbers = _wind_numbers(sentence, numbers)
         room.count_values(len(numbers) + 1)
         if name in NUMBERED:
             name += f"[{_float(sentence, NUMBERED[name]):.0f}]"
@@ -131,6 +153,17 @@ def _sentences(
         if when is not None:
             found[i] = (when + clock.midnight, name, numbers)
     return found, bad
+
+
+def _wind_numbers(sentence: Any, numbers: dict[str, float]) -> dict[str, float]:
+    """The angle and the speed in m/s of a wind, for the reference of its sentence."""
+    frame = REFERENCES.get(getattr(sentence, "reference", ""), "no")
+    unit = WIND_UNITS.get(getattr(sentence, "wind_speed_units", ""), float("nan"))
+    found: dict[str, float] = {}
+    for name, value in numbers.items():
+        if name.startswith(frame):
+            found[name] = value * unit if name.endswith("speed") else value
+    return found
 
 
 class _Clock:

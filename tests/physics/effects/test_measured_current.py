@@ -1,7 +1,9 @@
 """A recorded current: the law, the same motion as in a known current, a boat from another
 integrator."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from math import cos, sin
 from pathlib import Path
 from typing import Any
@@ -9,8 +11,9 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from answers import diagnosed, nothing_missing
-from pushed_boat import A11, A22, DAMPING, RATE, sail
+from answers import diagnosed, named, nothing_missing
+from pushed_boat import A11, A22, COMMANDS, DAMPING, RATE, sail
+from raw_logs import imported
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.errors import BadInput
@@ -94,11 +97,11 @@ def tide(t: float) -> Array:
     return np.array([0.12 + 0.05 * sin(0.05 * t), 0.1 * cos(0.04 * t)])
 
 
-def carried_boat(t: float, y: Array, _: Array) -> Array:
+def carried_boat(t: float, y: Array, _: Array, stream: Callable[[float], Array] = tide) -> Array:
     """What the stream adds to the force on the trial boat: damping and added mass act on the
     velocity relative to the water, whose change in body axes is that of the heading."""
     c, s = cos(y[2]), sin(y[2])
-    north, east = tide(t)
+    north, east = stream(t)
     along, across = c * north + s * east, c * east - s * north
     X = DAMPING[0] * along + A11 * y[5] * across
     Y = DAMPING[1] * across - A22 * y[5] * along
@@ -124,3 +127,44 @@ def test_with_the_current_recorded_nothing_is_missing_and_without_it_something_i
     (other := tmp_path / "unknown").mkdir()
     without = diagnosed(bare, other, "trial_boat")
     assert without["verdict"] != "nothing_missing"
+
+
+def ebb(t: float, run: int) -> Array:
+    """A stream to north and east [m/s] that turns from one run to the next, and slowly in each."""
+    turned = 2.1 * run + 0.004 * t
+    return np.array([0.16 * cos(turned), 0.16 * sin(turned)])
+
+
+def water_log(run: Recording, stream: Array) -> Array:
+    """Speed through the water along the bow (N,) [m/s], by a stream (N, 2) and the true track."""
+    place = run["x_m"] + 1j * run["y_m"]
+    ground = np.convolve(np.pad(np.gradient(place, run.t), 4, mode="edge"), np.ones(9) / 9, "valid")
+    through = ground - (stream[:, 0] + 1j * stream[:, 1])
+    return (through * np.exp(-1j * run["psi_rad"])).real
+
+
+@pytest.mark.slow
+def test_from_a_log_of_the_speed_through_the_water_the_current_is_named(tmp_path: Path) -> None:
+    text = vessel.load_vessel("trial_boat").file.read_text(encoding="utf-8")
+    named_columns = KNOWN.partition("[[effect]]")[0]
+    boat = boats.written(tmp_path, "carried", text + named_columns)
+    runs = []
+    for seed in (1, 2, 3):
+        flow = partial(ebb, run=seed)
+        one, _ = sail(f"run_{seed}", seed, partial(carried_boat, stream=flow))
+        raw = {"time": one.t, "psi_deg": np.degrees(one["psi_rad"]) % 360.0}
+        raw |= {name: one[name] for name in ("x_m", "y_m", *COMMANDS)}
+        stream = np.array([flow(now) for now in one.t])
+        raw["STW_kn"] = water_log(one, stream) * 3600.0 / 1852.0
+        (folder := tmp_path / f"log_{seed}").mkdir()
+        recording, _ = imported(folder, boat, raw)
+        found = np.column_stack([recording[name] for name in STREAM])
+        true = np.array([flow(now) for now in recording.t])
+        assert np.median(np.hypot(*(found - true).T)) < 0.02  # [m/s]
+        runs.append(replace(recording, name=f"run_{seed}", notes=one.notes))
+    answer = diagnosed(runs, tmp_path, str(boat))
+    # the sideways motion through the water, which the log does not measure, may stay unexplained
+    named(answer, "measured_current", {"scale": 1.0}, more=answer["unknown"]["flag"])
+    drag = float(DAMPING[1]) * 0.16  # [N] of the current on the beam
+    rest = answer["unknown"].get("rest", {})
+    assert all(rest[axis]["rms"] < 0.05 * drag for axis in ("surge", "sway") if axis in rest)

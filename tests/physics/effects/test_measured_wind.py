@@ -9,7 +9,8 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from answers import diagnosed
+from answers import diagnosed, named
+from raw_logs import imported
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis.candidates import candidate_library
@@ -343,3 +344,70 @@ def test_with_the_wind_known_nothing_is_missing_and_without_it_something_is(tmp_
     assert "wind" in [e["name"] for e in without["effects"]] or without["unknown"]["flag"], without[
         "sentence"
     ]
+
+
+ABOARD = """
+[measured]
+apparent_wind_mps = { about = "anemometer in the mast" }
+apparent_wind_from_rad = { about = "clockwise from the bow" }
+"""
+
+
+def test_it_is_a_candidate_where_the_vessel_names_and_the_recordings_have_its_columns(
+    tmp_path: Path,
+) -> None:
+    bare = candidate_library(vessel.load_vessel("trial_boat"))
+    assert "wind_mps and wind_from_rad are not in" in bare.inapplicable["measured_wind"]
+    boat = vessel.load_vessel(str(boats.written(tmp_path, "aboard", boats.PLANAR + ABOARD)))
+    name, columns = "measured_relative_wind", ["apparent_wind_mps", "apparent_wind_from_rad"]
+    assert name in candidate_library(boat, columns=["x_m", *columns]).tested_names
+    half = candidate_library(boat, columns=["x_m", "apparent_wind_mps"])
+    assert "apparent_wind_from_rad was recorded" in half.excluded[name]
+    assert "measured_wind" in candidate_library(boat).inapplicable
+
+
+def test_a_vessel_with_the_effect_has_it_as_a_coefficient_and_not_as_a_candidate(
+    boat: Vessel,
+) -> None:
+    library = candidate_library(boat, columns=["wind_mps", "wind_from_rad"])
+    assert not {"measured_wind", "further_measured_wind"} & set(library.tested_names)
+
+
+def apparent(run: Recording) -> Recording:
+    """The run with the wind as an anemometer on board measures it, and not ashore."""
+    t, psi = run.t, run["psi_rad"]
+    north, east = np.gradient(run["x_m"], t), np.gradient(run["y_m"], t)
+    kernel = np.ones(11) / 11
+    north, east = np.convolve(north, kernel, "same"), np.convolve(east, kernel, "same")
+    speed, comes_from = run["wind_mps"], run["wind_from_rad"]
+    air = -speed * np.exp(1j * comes_from) - (north + 1j * east)
+    past = air * np.exp(-1j * psi)
+    kept = {k: x for k, x in run.signals.items() if not k.startswith("wind")}
+    kept |= {"apparent_wind_mps": abs(past), "apparent_wind_from_rad": np.angle(-past)}
+    return replace(run, signals=kept)
+
+
+@pytest.mark.slow
+def test_from_the_raw_log_of_an_owner_the_wind_is_named_with_its_areas(tmp_path: Path) -> None:
+    """Apparent wind in knots, its angle in degrees to both sides, heading in degrees."""
+    bare = trial_boat(tmp_path, False)
+    boat = tmp_path / "aboard"
+    boat.mkdir()
+    text = (Path(bare) / "vessel.toml").read_text(encoding="utf-8")
+    boats.written(boat, "blown", text + ABOARD)
+    runs = []
+    for seed in range(3):
+        run = apparent(sailed(f"run_{seed}", seed))
+        raw = {"time": run.t, "psi_deg": np.degrees(run["psi_rad"]) % 360.0}
+        raw |= {
+            name: run[name] for name in ("x_m", "y_m", *vessel.load_vessel("trial_boat").commands)
+        }
+        raw["AWS_kn"] = run["apparent_wind_mps"] * 3600.0 / 1852.0
+        raw["AWA"] = np.degrees(run["apparent_wind_from_rad"])
+        folder = tmp_path / f"log_{seed}"
+        folder.mkdir()
+        recording, _ = imported(folder, boat / "blown", raw)
+        runs.append(replace(recording, name=f"run_{seed}", notes=run.notes))
+    answer = diagnosed(runs, tmp_path, str(boat / "blown"))
+    true = {"front_m2": 0.03, "side_m2": 0.08, "arm_m": 0.05, "swing_m": -0.1}
+    named(answer, "measured_relative_wind", true)

@@ -1,17 +1,14 @@
-"""What is measured aboard, from the files of several loggers to the columns of a recording."""
+"""Inputs measured aboard, from the files of several loggers to the columns of a recording."""
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
 import boats
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from raw_logs import imported
 
-from boatsim.cli.commands import app
 from boatsim.physics.base import Array
-from boatsim.recordings.table import Recording, read
 
 T = np.arange(0.0, 90.0, 0.2)
 LATITUDE, LONGITUDE = 59.9, 10.7  # [deg] of the begin
@@ -39,32 +36,6 @@ def common_columns(run: Mapping[str, Array]) -> dict[str, Array]:
         "thrust_port_N": 3.0 + 10.0 * run["turn"],
         "thrust_starboard_N": 3.0 - 10.0 * run["turn"],
     }
-
-
-def imported(
-    folder: Path, vessel: Path, log: Mapping[str, Array], change: Mapping[str, str] | None = None
-) -> tuple[Recording, str]:
-    """The recording after a proposal and a conversion, and the proposed map.
-
-    `change` are texts of the map that its owner replaces.
-    """
-    names = [folder / name for name in ("raw.csv", "map.toml", "run.csv")]
-    with open(names[0], "w", newline="") as file:
-        rows = csv.writer(file)
-        rows.writerow(log)
-        for row in zip(*log.values(), strict=True):
-            rows.writerow([f"{x:.9g}" if x < 1e6 else f"{x:.3f}" for x in row])
-    raw, proposal, out = map(str, names)
-    done = CliRunner().invoke(app, ["import", raw, "--vessel", str(vessel), "--propose", proposal])
-    assert done.exit_code == 0, done.output
-    text = names[1].read_text()
-    for old, new in (change or {}).items():
-        assert old in text
-        text = text.replace(old, new)
-    names[1].write_text(text)
-    done = CliRunner().invoke(app, ["import", raw, "--map", proposal, "--out", out])
-    assert done.exit_code == 0, done.output
-    return read(names[2]), text
 
 
 def boat(folder: Path, more: str) -> Path:
@@ -99,3 +70,78 @@ def test_a_map_states_what_a_vessel_without_these_inputs_needs(tmp_path: Path) -
     named = boat(tmp_path / "second", f"\n[measured]\n{tables}\n")
     recording, _ = imported(tmp_path / "second", named, log)
     assert {"battery_A", "battery_V"} <= set(recording.signals)
+
+
+# ---- wind
+
+
+def blown(run: Mapping[str, Array], seed: int = 0) -> tuple[Array, Array]:
+    """Apparent wind [m/s] and its direction from the bow [rad], with gusts."""
+    rng = np.random.default_rng(seed)
+    kernel = np.exp(-0.2 * np.arange(60) / 4.0)
+    gusts = np.convolve(rng.standard_normal(len(T) + 59), kernel, "valid") / np.sqrt(10.0)
+    over_ground = -(4.0 + 0.5 * gusts) * np.exp(1j * (2.0 + 0.05 * np.roll(gusts, 50)))
+    past = over_ground - run["u"] * np.exp(1j * run["psi"])
+    past = past * np.exp(-1j * run["psi"])
+    return abs(past), np.angle(-past)
+
+
+APPARENT = """
+[measured]
+apparent_wind_mps = {}
+apparent_wind_from_rad = {}
+"""
+KN = 1852.0 / 3600.0
+
+
+@pytest.mark.parametrize(
+    ("speed", "unit", "angle", "form"),
+    [
+        ("AWS", KN, "AWA", "degrees to both sides"),
+        ("AWS [kn]", KN, "AWA [deg]", "degrees around"),
+        ("wind_rel_speed_kmh", 1.0 / 3.6, "wind_rel_dir", "degrees around"),
+        ("apparent wind speed", 1.0, "apparent wind angle", "radians"),
+        ("Windgeschwindigkeit scheinbar", 1.0 / 3.6, "Windwinkel scheinbar", "degrees to port"),
+        ("wind_speed", KN, "wind_angle", "degrees around"),  # the frame is not stated
+    ],
+)
+def test_an_apparent_wind_of_several_loggers_is_imported_in_metres_and_radians(
+    tmp_path: Path, speed: str, unit: float, angle: str, form: str
+) -> None:
+    run = voyage()
+    strength, comes_from = blown(run)
+    written = {
+        "degrees to both sides": np.degrees(comes_from),
+        "degrees around": np.degrees(comes_from) % 360.0,
+        "degrees to port": -np.degrees(comes_from) % 360.0,
+        "radians": comes_from,
+    }[form]
+    log = {**common_columns(run), speed: strength / unit, angle: written}
+    recording, text = imported(tmp_path, boat(tmp_path, APPARENT), log)
+    rows = np.searchsorted(T, recording.t + 1e-6, side="right") - 1
+    past = recording["apparent_wind_mps"] * np.exp(1j * recording["apparent_wind_from_rad"])
+    true = (strength * np.exp(1j * comes_from))[rows]
+    assert np.median(abs(past - true)) < 0.02 * np.median(strength), text
+
+
+def test_a_unit_that_nothing_shows_is_asked(tmp_path: Path) -> None:
+    run = voyage()
+    wind = {"TWS": 8.0 + np.sin(0.1 * T), "TWD": 200.0 + 5.0 * np.sin(0.07 * T)}
+    vessel = boat(tmp_path, "\n[measured]\nwind_mps = {}\nwind_from_rad = {}\n")
+    recording, text = imported(tmp_path, vessel, {**common_columns(run), **wind})
+    assert "wind_mps" not in recording.signals
+    assert '# wind_mps = "TWS"' in text and "add * kn or * kmh" in text
+    changes = {'# wind_mps = "TWS"': 'wind_mps = "TWS * kn"'}
+    changes["# wind_from_rad = "] = "wind_from_rad = "
+    recording, _ = imported(tmp_path, vessel, {**common_columns(run), **wind}, changes)
+    assert np.mean(recording["wind_mps"]) == pytest.approx(8.0 * KN, rel=0.05)
+    assert np.degrees(np.mean(recording["wind_from_rad"])) == pytest.approx(200.0, abs=1.0)
+
+
+def test_a_map_states_the_columns_of_the_wind_that_a_vessel_may_name(tmp_path: Path) -> None:
+    run = voyage()
+    strength, comes_from = blown(run)
+    log = {**common_columns(run), "AWS": strength, "AWA": np.degrees(comes_from)}
+    _, text = imported(tmp_path, boat(tmp_path, ""), log)
+    assert "# apparent_wind_mps = { about" in text
+    assert '# apparent_wind_from_rad = "AWA * deg"' in text
