@@ -1,19 +1,17 @@
 """Implementation of `boatsim import`: propose a map for a log, or convert a log with a map."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
 from boatsim.cli.exits import print_lines, print_note, print_notes
+from boatsim.cli.measured_inputs import measured_text
 from boatsim.cli.progress import report_stages
 from boatsim.errors import BadInput, escape_for_terminal
 from boatsim.files import read_toml, replace_file
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import ChannelEffect
 from boatsim.physics.content import vessel_reference
-from boatsim.physics.effects.measured_current import MeasuredCurrent
-from boatsim.physics.effects.measured_relative_wind import MeasuredRelativeWind
-from boatsim.physics.effects.measured_wind import MeasuredWind
 from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.vessel import Vessel
@@ -21,7 +19,7 @@ from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.convert import convert_log
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.mapping_proposal import propose_map, track_and_heading
+from boatsim.recordings.importing.mapping_proposal import propose_map
 from boatsim.recordings.importing.recording_notes import (
     position_fix_type,
     recording_notes_text,
@@ -30,18 +28,6 @@ from boatsim.recordings.importing.recording_notes import (
 from boatsim.recordings.importing.several_logs import open_logs
 from boatsim.recordings.importing.signal_classification import UNKNOWN_BODY, Body
 from boatsim.recordings.importing.signal_listing import signal_table
-from boatsim.recordings.importing.supply_currents import supply_current_lines
-from boatsim.recordings.importing.unnamed_inputs import supply_inputs, unnamed_input_lines
-from boatsim.recordings.importing.voltages import voltage_lines
-from boatsim.recordings.importing.water_speeds import (
-    current_table,
-    unnamed_current,
-    water_speeds_of_log,
-)
-from boatsim.recordings.importing.wind_evidence import APPARENT, TRUE
-from boatsim.recordings.importing.wind_inputs import USUAL, WindRole, unnamed_wind, wind_lines
-from boatsim.recordings.importing.winds import Wind, winds_of_log
-from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import read, write_csv
 from boatsim.simulate.manoeuvre import approach_speed
 
@@ -108,16 +94,7 @@ def _propose_map(
             drives.append(_vessel_channel(boat, channel, low, high))
         speed = partial(_speed_ahead, boat)
         text = propose_map(log, vessel, drives, boat.dof, boat.columns, speed, boat.turns_over)
-        roles = _wind_roles(boat)
-        motion = track_and_heading(log, body)
-        winds = winds_of_log(log, *motion)
-        speeds = water_speeds_of_log(log, *motion)
-        current = _current_columns(boat)
-        made = set(current.values()) if speeds else set[str]()
-        text += _measured_lines(boat, log, roles, winds, made)
-        new = [*supply_inputs(boat.measured, log), *unnamed_wind(roles, winds)]
-        text += unnamed_input_lines([*new, *unnamed_current(current, speeds)], log)
-        text += current_table(current, speeds, bool(current))
+        text += measured_text(boat, log, body)
     else:
         text = propose_map(log, vessel, [], (), None)
     print_notes(log.remarks)
@@ -169,65 +146,6 @@ def _speed_ahead(boat: Vessel) -> float:
         return approach_speed(boat)
     except BadInput:
         return 0.0
-
-
-def _wind_roles(boat: Vessel) -> dict[str, WindRole]:
-    """Measured quantities of a vessel that are of a wind, by its effects or their usual names."""
-    roles = {name: role for name, role in USUAL.items() if name in boat.measured}
-    for effect in boat.effects:
-        if not isinstance(effect, MeasuredWind):
-            continue
-        frame = APPARENT if isinstance(effect, MeasuredRelativeWind) else TRUE
-        for role, channel in boat.bindings(effect).items():
-            if channel in boat.measured:
-                roles[str(channel)] = WindRole(frame, role)
-    return roles
-
-
-def _current_columns(boat: Vessel) -> dict[str, str]:
-    """Measured columns of a current of a vessel, by "north" and "east"; empty without them."""
-    for effect in boat.effects:
-        if isinstance(effect, MeasuredCurrent):
-            bound = boat.bindings(effect)
-            return {role: str(name) for role, name in bound.items() if name in boat.measured}
-    usual = {role: str(name) for role, name in MeasuredCurrent.recorded_as.items()}
-    return usual if set(usual.values()) <= set(boat.measured) else {}
-
-
-def _measured_lines(
-    boat: Vessel,
-    log: Log,
-    roles: Mapping[str, WindRole],
-    winds: Sequence[Wind],
-    made: Collection[str],
-) -> str:
-    """Lines of a proposed map for the measured inputs of a vessel, at the end of its columns.
-
-    The inputs `made` are columns of a current that a table of the map makes.
-    """
-    lines = ""
-    for name, about in boat.measured.items():
-        if name in made:
-            continue
-        if name in log.signals:
-            lines += f'{name} = "{name}"\n'
-            continue
-        words = about.about or "measured, not commanded"
-        if unit_of(name) == "V":
-            lines += voltage_lines(name, words, log)
-            continue
-        if unit_of(name) == "A":
-            lines += supply_current_lines(name, words, about.neutral, log)
-            continue
-        if name in roles:
-            lines += wind_lines(name, words, roles, winds)
-            continue
-        lines += f'# {name} = "..."  # CHECK: {words}\n'
-        if name.endswith("_m"):
-            lines += (
-                f"# or [waves.{name}] with probes that stand elsewhere, at the end of the file\n"
-            )
-    return lines
 
 
 def _turn_direction(boat: Vessel, channel: str) -> int:
