@@ -12,14 +12,13 @@ with one rate per file.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from boatsim.diagnosis.checks.clock_rate_comparison import RateComparison, compare_clock_rates
 from boatsim.diagnosis.checks.finding import Change, Finding
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.physics.base import Array
 from boatsim.recordings.motion_clock import (
     Stretches,
     estimate_clock_rates,
@@ -30,86 +29,6 @@ from boatsim.recordings.table import Recording
 
 SPEEDS = ("u_mps", "v_mps")
 MIN_RATE_SD = 1e-6  # against division by 0 in logs without noise
-
-
-@dataclass(frozen=True)
-class _RateComparison:
-    """Clock rates by the track and by the heading over turning stretches of all recordings.
-
-    Attributes:
-        track: Clock rates (K,) by positions and velocities.
-        turning: Clock rates (K,) by heading and yaw rate.
-        weight: Square of the change of heading (K,), the precision of `turning`.
-        file: Number of the file (K,).
-    """
-
-    track: Array
-    turning: Array
-    weight: Array
-    file: NDArray[np.int64]
-
-    def selected(self, used: NDArray[np.bool_]) -> "_RateComparison":
-        """The comparison over some of the stretches (K,)."""
-        return _RateComparison(
-            self.track[used], self.turning[used], self.weight[used], self.file[used]
-        )
-
-    @property
-    def correlation(self) -> float:
-        """Weighted correlation of both rates about their means in each file."""
-        a, b = self.track.copy(), self.turning.copy()
-        for file in np.unique(self.file).tolist():
-            own = self.file == file
-            a[own] -= _mean(a[own], self.weight[own])
-            b[own] -= _mean(b[own], self.weight[own])
-        size = float(np.sqrt(_mean(a * a, self.weight) * _mean(b * b, self.weight)))
-        if size > 0.0:
-            return float(_mean(a * b, self.weight)) / size
-        return 0.0
-
-    @property
-    def significance(self) -> float:
-        """Number of standard deviations by which the correlation differs from none."""
-        c = self.correlation
-        freedom = max(self.effective_sample_size - 1.0 - len(np.unique(self.file)), 0.0)
-        return c * float(np.sqrt(freedom / max(1.0 - c * c, 1e-9)))
-
-    def agrees(self, config: ChecksConfig) -> bool:
-        """Return whether both rates certainly vary in the same way."""
-        enough = self.correlation > config.clock_min_correlation
-        return enough and self.significance > config.clock_min_sds
-
-    def covariance(self) -> tuple[float, float]:
-        """Covariance of both rates about their means, and its standard deviation."""
-        a = self.track - _mean(self.track, self.weight)
-        b = self.turning - _mean(self.turning, self.weight)
-        middle = _mean(a * b, self.weight)
-        variance = _mean((a * b - middle) ** 2, self.weight)
-        return middle, float(np.sqrt(variance / self.effective_sample_size))
-
-    @property
-    def effective_sample_size(self) -> float:
-        """Number of stretches of equal weight that would be as informative."""
-        return float(self.weight.sum() ** 2 / (self.weight**2).sum())
-
-    def velocity_gain(self) -> tuple[float, float]:
-        """Gain of the velocities for which both rates agree on average, and its sd."""
-        ratio = self.track / self.turning
-        middle = _mean(ratio, self.weight)
-        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.effective_sample_size))
-        return middle, sd
-
-    def mean_clock_rate(self) -> tuple[float, float]:
-        """Mean clock rate by the heading, and its sd."""
-        middle = _mean(self.turning, self.weight)
-        sd = float(
-            np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.effective_sample_size)
-        )
-        return middle, sd
-
-
-def _mean(values: Array, weight: Array) -> float:
-    return float((values * weight).sum() / weight.sum())
 
 
 def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> list[Finding]:
@@ -133,7 +52,7 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
         if run:
             long.append(run)
             files.append(recording.origin)
-    compared = _compare(long, files, config)
+    compared = compare_clock_rates(long, files, config)
     if compared is None:
         return []
     gain, gain_sd = compared.velocity_gain()
@@ -160,7 +79,7 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     return found
 
 
-def _wandering_files(compared: _RateComparison, config: ChecksConfig) -> list[list[int]]:
+def _wandering_files(compared: RateComparison, config: ChecksConfig) -> list[list[int]]:
     """Files whose clocks run unevenly: each that shows it alone, and others that do together."""
     alone, rest = list[list[int]](), list[int]()
     for file in np.unique(compared.file).tolist():
@@ -186,7 +105,7 @@ def _wandering_files(compared: _RateComparison, config: ChecksConfig) -> list[li
 
 def _constant_rates(
     recordings: Sequence[Recording],
-    compared: _RateComparison,
+    compared: RateComparison,
     runs: Sequence[tuple[str, Stretches]],
     files: Sequence[str],
     config: ChecksConfig,
@@ -205,7 +124,7 @@ def _constant_rates(
     return found
 
 
-def _different_rates(compared: _RateComparison, config: ChecksConfig) -> list[int]:
+def _different_rates(compared: RateComparison, config: ChecksConfig) -> list[int]:
     """Files that have constant clock rates of their own; empty if one rate explains all files.
 
     The log likelihood of one rate per file must exceed that of a common rate, for each further
@@ -231,40 +150,6 @@ def _different_rates(compared: _RateComparison, config: ChecksConfig) -> list[in
     return []
 
 
-def _compare(
-    runs: Sequence[Stretches], files: Sequence[str], config: ChecksConfig
-) -> _RateComparison | None:
-    """Both clock rates over turning stretches; None if these are too few."""
-    track, turning, weight = list[Array](), list[Array](), list[Array]()
-    file = list[NDArray[np.int64]]()
-    for run, name in zip(runs, files, strict=True):
-        travelled = (run.travelled**2).sum(axis=0)
-        used = (np.abs(run.turned) > config.clock_min_turn) & (travelled > 0.0)
-        along = (run.travelled * run.moved).sum(axis=0)
-        track.append(along[used] / travelled[used])
-        turning.append(run.swung[used] / run.turned[used])
-        weight.append(run.turned[used] ** 2)
-        file.append(np.full(int(used.sum()), files.index(name)))
-    if sum(map(len, track)) < config.clock_min_stretches:
-        return None
-    weights = np.concatenate(weight)
-    weights = np.minimum(weights, np.median(weights))
-    found = _RateComparison(
-        np.concatenate(track), np.concatenate(turning), weights, np.concatenate(file)
-    )
-    if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
-        return _without_contradictions(found, config)
-    return found
-
-
-def _without_contradictions(found: _RateComparison, config: ChecksConfig) -> _RateComparison | None:
-    """The stretches in which heading and yaw rate agree in their sense."""
-    same = found.turning > 0.0
-    if same.sum() < max(config.clock_min_stretches, config.clock_min_agreement * len(same)):
-        return None
-    return found.selected(same)
-
-
 def _track_rate(runs: Sequence[Stretches]) -> float:
     """Mean clock rate by positions and velocities over all stretches."""
     along = sum(float((run.travelled * run.moved).sum()) for run in runs)
@@ -272,7 +157,7 @@ def _track_rate(runs: Sequence[Stretches]) -> float:
 
 
 def _wander(
-    recordings: Sequence[Recording], gain: float, compared: _RateComparison, config: ChecksConfig
+    recordings: Sequence[Recording], gain: float, compared: RateComparison, config: ChecksConfig
 ) -> list[Finding]:
     """The finding of an uneven clock in each recording."""
     runs = [motion_stretches(recording.t, recording.signals) for recording in recordings]
@@ -311,7 +196,7 @@ def _wander(
 
 def _constant_rate(
     recordings: Sequence[Recording],
-    compared: _RateComparison,
+    compared: RateComparison,
     everywhere: float,
     config: ChecksConfig,
 ) -> list[Finding]:

@@ -1,0 +1,131 @@
+"""Clock rates of a log by the track and by the heading, over stretches in which the vessel turns."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.physics.base import Array
+from boatsim.recordings.motion_clock import Stretches
+
+
+@dataclass(frozen=True)
+class RateComparison:
+    """Clock rates by the track and by the heading over turning stretches of all recordings.
+
+    Attributes:
+        track: Clock rates (K,) by positions and velocities.
+        turning: Clock rates (K,) by heading and yaw rate.
+        weight: Square of the change of heading (K,), the precision of `turning`.
+        file: Number of the file (K,).
+    """
+
+    track: Array
+    turning: Array
+    weight: Array
+    file: NDArray[np.int64]
+
+    def selected(self, used: NDArray[np.bool_]) -> "RateComparison":
+        """Return the comparison over some of the stretches (K,)."""
+        return RateComparison(
+            self.track[used], self.turning[used], self.weight[used], self.file[used]
+        )
+
+    @property
+    def correlation(self) -> float:
+        """Weighted correlation of both rates about their means in each file."""
+        a, b = self.track.copy(), self.turning.copy()
+        for file in np.unique(self.file).tolist():
+            own = self.file == file
+            a[own] -= _mean(a[own], self.weight[own])
+            b[own] -= _mean(b[own], self.weight[own])
+        size = float(np.sqrt(_mean(a * a, self.weight) * _mean(b * b, self.weight)))
+        if size > 0.0:
+            return float(_mean(a * b, self.weight)) / size
+        return 0.0
+
+    @property
+    def significance(self) -> float:
+        """Number of standard deviations by which the correlation differs from none."""
+        c = self.correlation
+        freedom = max(self.effective_sample_size - 1.0 - len(np.unique(self.file)), 0.0)
+        return c * float(np.sqrt(freedom / max(1.0 - c * c, 1e-9)))
+
+    def agrees(self, config: ChecksConfig) -> bool:
+        """Return whether both rates certainly vary in the same way."""
+        enough = self.correlation > config.clock_min_correlation
+        return enough and self.significance > config.clock_min_sds
+
+    def covariance(self) -> tuple[float, float]:
+        """Covariance of both rates about their means, and its standard deviation."""
+        a = self.track - _mean(self.track, self.weight)
+        b = self.turning - _mean(self.turning, self.weight)
+        middle = _mean(a * b, self.weight)
+        variance = _mean((a * b - middle) ** 2, self.weight)
+        return middle, float(np.sqrt(variance / self.effective_sample_size))
+
+    @property
+    def effective_sample_size(self) -> float:
+        """Number of stretches of equal weight that would be as informative."""
+        return float(self.weight.sum() ** 2 / (self.weight**2).sum())
+
+    def velocity_gain(self) -> tuple[float, float]:
+        """Gain of the velocities for which both rates agree on average, and its sd."""
+        ratio = self.track / self.turning
+        middle = _mean(ratio, self.weight)
+        sd = float(np.sqrt(_mean((ratio - middle) ** 2, self.weight) / self.effective_sample_size))
+        return middle, sd
+
+    def mean_clock_rate(self) -> tuple[float, float]:
+        """Mean clock rate by the heading, and its sd."""
+        middle = _mean(self.turning, self.weight)
+        sd = float(
+            np.sqrt(_mean((self.turning - middle) ** 2, self.weight) / self.effective_sample_size)
+        )
+        return middle, sd
+
+
+def _mean(values: Array, weight: Array) -> float:
+    return float((values * weight).sum() / weight.sum())
+
+
+def compare_clock_rates(
+    runs: Sequence[Stretches], files: Sequence[str], config: ChecksConfig
+) -> RateComparison | None:
+    """Return both clock rates over turning stretches; None if these are too few.
+
+    Args:
+        runs: Stretches of each recording.
+        files: File of each recording.
+        config: Thresholds of the quality checks.
+    """
+    track, turning, weight = list[Array](), list[Array](), list[Array]()
+    file = list[NDArray[np.int64]]()
+    for run, name in zip(runs, files, strict=True):
+        travelled = (run.travelled**2).sum(axis=0)
+        used = (np.abs(run.turned) > config.clock_min_turn) & (travelled > 0.0)
+        along = (run.travelled * run.moved).sum(axis=0)
+        track.append(along[used] / travelled[used])
+        turning.append(run.swung[used] / run.turned[used])
+        weight.append(run.turned[used] ** 2)
+        file.append(np.full(int(used.sum()), files.index(name)))
+    if sum(map(len, track)) < config.clock_min_stretches:
+        return None
+    weights = np.concatenate(weight)
+    weights = np.minimum(weights, np.median(weights))
+    found = RateComparison(
+        np.concatenate(track), np.concatenate(turning), weights, np.concatenate(file)
+    )
+    if not float(np.median(found.turning)) > 0.0 or not float(found.turning.min()) > 0.0:
+        return _without_contradictions(found, config)
+    return found
+
+
+def _without_contradictions(found: RateComparison, config: ChecksConfig) -> RateComparison | None:
+    """The stretches in which heading and yaw rate agree in their sense."""
+    same = found.turning > 0.0
+    if same.sum() < max(config.clock_min_stretches, config.clock_min_agreement * len(same)):
+        return None
+    return found.selected(same)
