@@ -142,7 +142,7 @@ def _different_rates(compared: RateComparison, config: ChecksConfig) -> list[int
     if len(files) < 2:
         return []
     rates, precision = np.array(middles), np.array(precisions)
-    off = rates - _mean(rates, precision)
+    off = rates - float(np.average(rates, weights=precision))
     gain = 0.5 * float((precision * off**2).sum())
     penalty = 0.5 * config.clock_min_sds**2 * (len(files) - 1)
     if gain > penalty and float(np.ptp(rates)) > config.clock_min_rate:

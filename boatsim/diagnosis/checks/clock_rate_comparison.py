@@ -1,4 +1,4 @@
-"""Clock rates of a log by the track and by the heading, over stretches in which the vessel turns."""
+"""Clock rates of a log by its track and by its heading, over parts in which the vessel turns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
