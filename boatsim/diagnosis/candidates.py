@@ -28,6 +28,7 @@ FEW = 2  # drives from which on one of them can differ from the others
 OF_TWO_DRIVES = (
     "an error of one of two drives is tried only where a force stays unexplained, or with --library"
 )
+RARE = "such an error is rare and is tried only where a force stays unexplained, or with --library"
 OF_A_KIND = (
     "an error that the thrusts or directions of two drives share is tried only where a force stays "
     "unexplained, or with --library"
@@ -131,16 +132,18 @@ def candidate_library(
                 )
             continue
         least = min(FEW, fewest)
-        missing = missing_requirements(kind, vessel, known, source.table, least, source.requested)
+        asked = source.requested and not kind.once_per  # a request names the kind, not the drive
+        missing = missing_requirements(kind, vessel, known, source.table, least, asked)
         missing = missing or _missing_columns(kind, columns)
         one_of_few = _is_error_of_one_of_few(kind, vessel, fewest) and not source.requested
         if one_of_few and kind.of_two:
             missing = missing or f"{kind.of_two} describes the difference of two"
+        later = (kind.tried_last or bool(kind.confounded_with)) and not source.requested
         if missing:
             inapplicable[name] = missing
             continue
         reason = reasons.get(name) or excluding_fact(kind.ruled_out_by, known)
-        if one_of_few or (kind.confounded_with and not source.requested):
+        if one_of_few or later:
             excluded[name] = reason or _reason_not_tested_first(kind, name, one_of_few)
             if not reason and (one_of_few or kind.tried_last):
                 last[name] = kind.confounded_with or kind.imitated_by
@@ -165,6 +168,8 @@ def _reason_not_tested_first(kind: type[Effect], name: str, one_of_few: bool) ->
     """Why a candidate is tested on request only, or where a force stays unexplained, in words."""
     if one_of_few:
         return OF_A_KIND if kind.jointly else OF_TWO_DRIVES
+    if not kind.confounded_with:
+        return RARE
     others = " or ".join(kind.confounded_with)
     if kind.tried_last:
         return (
@@ -237,16 +242,16 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
     """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        if has_single_candidates(kind, vessel, fewest):
+        if has_single_candidates(kind, vessel, fewest) and not kind.tried_last:
             yield from _sources_of_single_ones(name, kind, vessel, False)
-        elif name not in own or not _is_error_of_one_of_few(kind, vessel, fewest):
+        elif name not in own or not _is_error_of_one_of_several(kind, vessel):
             yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, False)
     for table in vessel.diagnosis.also:
         requested: type[Effect] = load_class("effect", str(table.get("use")), vessel.path)
         yield _Source(with_absolute_paths(requested, table, vessel.path), requested, True)
     for name in own:
         kind = load_class("effect", name, named=True)
-        if _is_error_of_one_of_few(kind, vessel, fewest):
+        if _is_error_of_one_of_several(kind, vessel):
             yield from _sources_of_single_ones(name, kind, vessel, True)
         else:
             yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, True)
@@ -267,9 +272,14 @@ def _sources_of_single_ones(
         yield _Source(table, kind, requested)
 
 
+def _is_error_of_one_of_several(kind: type[Effect], vessel: Vessel) -> bool:
+    """Whether a class is an error of one of several drives of a vessel."""
+    return len(single_subjects(kind, vessel)) >= FEW
+
+
 def _is_error_of_one_of_few(kind: type[Effect], vessel: Vessel, fewest: int) -> bool:
     """Whether a class is an error of one of several drives, which are few on a vessel."""
-    several = len(single_subjects(kind, vessel)) >= FEW
+    several = _is_error_of_one_of_several(kind, vessel)
     return several and not has_single_candidates(kind, vessel, fewest)
 
 

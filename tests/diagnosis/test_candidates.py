@@ -362,7 +362,6 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
         "drive_reversal_pause",
         "drive_hysteresis",
         "drive_deadband",
-        "drive_weak_reverse",
     ):
         single |= {f"{effect}_{channel}" for channel in ("thrust_port_N", "thrust_starboard_N")}
     for channel in ("steer_port_rad", "steer_starboard_rad"):
@@ -371,6 +370,8 @@ def test_settings_give_the_numbers_of_single_drives_and_of_placeholders() -> Non
     single |= {"steering_lag", "steering_delay", "thrust_delay", "thrust_rate_limit"}
     assert set(other.tested_names) - set(usual.tested_names) == single
     assert "one of two drives" in usual.excluded["drive_lag"]
+    assert "drive_weak_reverse" in other.tried_last
+    assert "rare" in other.excluded["drive_weak_reverse"]
     assert [e.name for e in other.placeholders] == ["described_1"]
     assert len(usual.placeholders) == 7
 

@@ -115,6 +115,7 @@ def test_a_drive_that_alone_loses_thrust_with_the_speed_is_named(tmp_path: Path)
     named(answer(lossy, tmp_path), "drive_loss_with_speed_port", {"loss_spm": 0.3})
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_drive_that_alone_is_weak_astern_is_named(tmp_path: Path) -> None:
     named(answer(weak_astern, tmp_path), "drive_weak_reverse_port_N", {"astern_factor": 0.6})

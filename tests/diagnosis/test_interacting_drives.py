@@ -205,7 +205,8 @@ def problem_of(name: str, effect: str) -> tuple[Problem, tuple[str, ...]]:
     own = ("drive_gain_error", "drive_hull_interaction", "drive_interaction")
     drives = [f"{effect}_{drive}" for effect in own for drive in boat.names_of("thruster")]
     tested = (*EFFECTS, *RIVALS, *drives)
-    effects = [e for e in candidate_library(boat).compiled_effects if e.name in tested]
+    library = candidate_library(boat, own[1:])
+    effects = [e for e in library.compiled_effects if e.name in tested]
     program = Program(boat, effects)
     mapped = [map_recording(recording, program) for recording in recordings]
     problem = Problem(mapped, prior_noise_levels(boat, recordings), {"thrust": 0.05})

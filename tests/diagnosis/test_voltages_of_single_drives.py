@@ -59,19 +59,21 @@ def test_controlled_drives_have_nothing_missing(tmp_path: Path) -> None:
 
 
 def test_each_drive_is_a_candidate_with_its_own_voltage() -> None:
-    library = candidate_library(platform_of_three_drives(VOLTAGES))
+    requested = ("drive_loss_with_voltage",)
+    library = candidate_library(platform_of_three_drives(VOLTAGES), requested)
     fed = {}
     for effect in library.entries:
         if effect.name.startswith("drive_loss_with_voltage"):
             fed[effect.on] = effect.fed_by  # type: ignore[attr-defined]
     assert fed == {(f"{drive}_N",): (f"battery_{drive}_V",) for drive in DRIVES}
-    bow = candidate_library(platform_of_three_drives(VOLTAGES), columns=["battery_bow_V"])
+    columns = ["battery_bow_V"]
+    bow = candidate_library(platform_of_three_drives(VOLTAGES), requested, columns=columns)
     assert "drive_loss_with_voltage_bow_N" in bow.tested_names
     assert "no column battery_port_V" in bow.excluded["drive_loss_with_voltage_port_N"]
 
 
 def test_it_is_no_candidate_without_a_voltage_or_without_several_drives() -> None:
     without = candidate_library(platform_of_three_drives())
-    assert "measured quantity in V" in without.inapplicable["drive_loss_with_voltage_port_N"]
+    assert "measured quantity in V" in without.inapplicable["drive_loss_with_voltage"]
     one = candidate_library(load_vessel("mariner"))
     assert "fewer than 2" in one.inapplicable["drive_loss_with_voltage"]

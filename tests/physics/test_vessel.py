@@ -83,10 +83,11 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
         "steering_backlash",
         "steering_rate_limit",
     }
-    of_one_drive = {"azimuth_backlash", "azimuth_delay", "azimuth_lag", "azimuth_rate_limit"}
+    of_drives = {"azimuth_backlash", "azimuth_delay", "azimuth_lag", "azimuth_rate_limit"}
+    of_drives |= {"steering_lag", "steering_delay"}
     assert everything - set(indoors.tested_names) == usual
-    assert set(ruled_out) == usual | of_one_drive
-    assert not of_one_drive & set(indoors.tried_last)
+    assert set(ruled_out) == usual | of_drives
+    assert not of_drives & set(indoors.tried_last)
     assert (
         indoors.excluded["wind"] == "indoors = true"
         and indoors.entries == candidate_library(boat).entries

@@ -209,7 +209,10 @@ def test_a_vessel_that_is_held_in_surge_has_no_speed(tmp_path: Path) -> None:
         (["--periods=-1"], "allowed are numbers from 0.2 to 40 s"),
         (["--directions", "400"], "allowed are numbers from -360 to 360 deg"),
         (["--waves", "strip_wave_loads,toward=1"], "toward does not apply"),
-        (["--waves", "fan_wind"], "fan_wind is no effect of waves; allowed are hull_buoyancy"),
+        (
+            ["--waves", "fan_wind"],
+            "fan_wind is no effect of waves; allowed are drive_ventilation, hull",
+        ),
         (["--waves", "strip_wave_loads,4"], "'4' is no parameter"),
         (["--waves", "strip_wave_lods"], "did you mean 'strip_wave_loads'"),
         (["--speed", "60"], "--speed 60: allowed is a number from 0 to 50 m/s"),

@@ -146,6 +146,7 @@ DriveLossWithVoltage = preset_effect(
     shown_by="the same commands of this drive alone with a full and with an empty battery",
     acts_on="thrust|shaft",
     once_per="actuator",
+    tried_last=True,
     of_all=("thrust_with_voltage", "shaft_with_voltage"),
     frees={
         "exponent": {

@@ -103,6 +103,7 @@ DriveHullInteraction = preset_effect(
     words="one drive alone gives less thrust where its race strikes the hull",
     shown_by="this drive turned through all directions at constant thrust",
     once_per="thruster",
+    tried_last=True,
     of_all=("thruster_hull_interaction",),
     frees={
         "loss": {

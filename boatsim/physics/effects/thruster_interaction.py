@@ -188,6 +188,7 @@ DriveInteraction = preset_effect(
     words="one drive alone gives less thrust in the race of another drive",
     shown_by="this drive alone, then with the race of another one turned on it",
     once_per="thruster",
+    tried_last=True,
     of_all=("thruster_interaction",),
     influenced_by_all=True,
     frees={

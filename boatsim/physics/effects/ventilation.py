@@ -164,6 +164,7 @@ DriveVentilation = preset_effect(
     words="one propeller alone loses thrust when it comes near the surface",
     shown_by="constant thrust of this drive alone while the boat pitches and heaves on still water",
     once_per="thruster",
+    tried_last=True,
     of_all=("ventilation",),
     frees={
         "loss": {

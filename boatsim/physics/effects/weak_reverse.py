@@ -86,6 +86,7 @@ DriveWeakReverse = preset_effect(
     words_above="one drive pushes more astern than commanded",
     shown_by="this drive alone ahead and astern",
     once_per="actuator",
+    tried_last=True,
     of_all=("weak_reverse",),
     # before a lag of its drive only, so that the candidates of several drives stay few
     either_side=False,

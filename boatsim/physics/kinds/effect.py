@@ -110,7 +110,7 @@ class Effect(CheckedParameters):
     jointly: ClassVar[bool] = False
     # effects with the same signature: this one is a candidate on request only
     confounded_with: ClassVar[tuple[str, ...]] = ()
-    # a candidate also where the others leave a force unexplained, or include a confounded one
+    # a candidate only where the others leave a force unexplained, or include a confounded one
     tried_last: ClassVar[bool] = False
     # effects that are selected in its place where it is not tested; it is then tried last
     imitated_by: ClassVar[tuple[str, ...]] = ()

@@ -55,10 +55,13 @@ def test_a_weak_reverse_reduces_the_thrust_astern_of_its_drive_alone(
 
 def test_a_weak_reverse_is_a_candidate_for_drives_that_can_push_astern() -> None:
     names = {f"drive_weak_reverse_{drive}_N" for drive in ("bow", "port", "starboard")}
-    assert names <= set(candidate_library(platform_of_three_drives()).tested_names)
-    one_way = candidate_library(platform_of_turning_drives())
+    assert "drive_weak_reverse" in candidate_library(platform_of_three_drives()).tried_last
+    requested = candidate_library(platform_of_three_drives(), ("drive_weak_reverse",))
+    assert names <= set(requested.tested_names)
+    one_way = candidate_library(platform_of_turning_drives(), ("drive_weak_reverse",))
     assert not names & set(one_way.tested_names)
     assert one_way.inapplicable["drive_weak_reverse_port_N"] == "no command is negative"
+    assert "drive_weak_reverse" not in candidate_library(platform_of_turning_drives()).tried_last
 
 
 def test_a_dead_band_is_a_candidate_for_each_of_several_drives() -> None:
@@ -93,7 +96,9 @@ def test_a_race_on_the_hull_reduces_the_thrust_of_its_drive_alone(
 
 
 def test_a_race_on_the_hull_is_a_candidate_for_each_drive_that_turns() -> None:
-    library = candidate_library(platform_of_turning_drives(("port", "starboard")))
+    boat = platform_of_turning_drives(("port", "starboard"))
+    assert "drive_hull_interaction" in candidate_library(boat).tried_last
+    library = candidate_library(boat, ("drive_hull_interaction",))
     names = {name for name in library.tested_names if "drive_hull_interaction" in name}
     assert names == {"drive_hull_interaction_port", "drive_hull_interaction_starboard"}
     assert "60 degrees" in library.inapplicable["drive_hull_interaction_bow"]
@@ -118,7 +123,9 @@ def test_races_of_all_others_reduce_the_thrust_of_one_drive_alone() -> None:
 
 
 def test_a_drive_in_a_race_is_a_candidate_where_another_one_can_be_turned_on_it() -> None:
-    library = candidate_library(platform_of_turning_drives(("bow",)))
+    boat = platform_of_turning_drives(("bow",))
+    assert "drive_interaction" in candidate_library(boat).tried_last
+    library = candidate_library(boat, ("drive_interaction",))
     names = {name for name in library.tested_names if "drive_interaction" in name}
     assert names == {"drive_interaction_port", "drive_interaction_starboard"}
     assert "in the race of another" in library.inapplicable["drive_interaction_bow"]
