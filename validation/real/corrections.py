@@ -37,19 +37,24 @@ def accept_corrections(files: Sequence[Path], vessel: str) -> list[str]:
             offered.setdefault(finding.name, []).append(run)
     tables = list[str]()
     for run, lines in by_run.items():
-        tables += _run_tables(run, lines)
+        tables += tables_of_run(run, lines)
     folder = files[0].parent
     (folder / "recording.toml").write_text("\n".join(tables) + "\n", encoding="utf-8")
     return _summaries(offered)
 
 
-def _run_tables(run: str, lines: Sequence[str]) -> list[str]:
-    """Tables of one run: its own keys first, then columns and latency, each key once."""
+def tables_of_run(run: str, lines: Sequence[str]) -> list[str]:
+    """Return the tables of one run: its own keys first, then columns and latency, each key once.
+
+    Args:
+        run: Name of the run.
+        lines: Lines that checks offer, with headers of tables for all runs or for this one.
+    """
     tables: dict[str, dict[str, str]] = {"": {}, COLUMNS: {}, LATENCY: {}}
     table = ""
     for line in lines:
         if line.startswith("["):
-            table = line
+            table = _table_of_run(run, line)
         else:
             key, _, value = line.partition(" = ")
             tables[table].setdefault(key, value)
@@ -62,6 +67,15 @@ def _run_tables(run: str, lines: Sequence[str]) -> list[str]:
             written.append(f"[runs.{toml_key(run)}{inner}]")
             written += [f"{key} = {value}" for key, value in keys.items()]
     return written
+
+
+def _table_of_run(run: str, header: str) -> str:
+    """Return "[columns]" for the header "[runs.NAME.columns]", and "" for "[runs.NAME]"."""
+    own = f"[runs.{toml_key(run)}"
+    if not header.startswith(own):
+        return header
+    inner = header.removeprefix(own).strip("].")
+    return f"[{inner}]" if inner else ""
 
 
 def _summaries(offered: Mapping[str, Sequence[str]]) -> list[str]:
