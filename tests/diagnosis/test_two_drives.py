@@ -75,6 +75,7 @@ def test_the_lag_of_one_drive_is_named_with_its_size(tmp_path: Path) -> None:
     assert answer["fit"]["heading_rms_rad"]["patched"] < 0.01  # without the lag 0.09 rad
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_pause_of_one_drive_is_named_with_its_length(tmp_path: Path) -> None:
     def fault(orders: Array) -> Array:
@@ -84,6 +85,7 @@ def test_a_pause_of_one_drive_is_named_with_its_length(tmp_path: Path) -> None:
     named(answer, "drive_reversal_pause_thrust_port_N", {"pause_s": PAUSE})
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_one_drive_that_is_weak_astern_is_named_with_its_factor(tmp_path: Path) -> None:
     def fault(orders: Array) -> Array:

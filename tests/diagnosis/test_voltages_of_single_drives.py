@@ -48,11 +48,13 @@ def test_a_drive_that_alone_depends_on_its_voltage_is_named(tmp_path: Path) -> N
     named(found, "drive_loss_with_voltage_port_N", {"exponent": 2.0})
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_drives_that_depend_on_their_voltages_alike_have_one_cause(tmp_path: Path) -> None:
     named(answer(tmp_path, 2.0, 2.0, 2.0), "thrust_with_voltage", {"exponent": 2.0})
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_controlled_drives_have_nothing_missing(tmp_path: Path) -> None:
     nothing_missing(answer(tmp_path, 0.0, 0.0, 0.0))

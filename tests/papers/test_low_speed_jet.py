@@ -1,7 +1,6 @@
 """Water-jet craft at low speed and astern: figures of its specification, closed forms, and loops
 written out here."""
 
-import time
 from dataclasses import replace
 from functools import cache
 from math import atan, cos, degrees, exp, log, pi, radians, sqrt
@@ -335,15 +334,6 @@ def test_nozzle_rests_where_the_jet_can_not_turn() -> None:
 def test_reversing_stops_the_craft_when_the_surge_model_says() -> None:
     u0, u1 = 2.46, 2.46 * cos(2.0 * ASTERN)
     assert value("reverse_at_once", "time") == pytest.approx(5.58 * log((u0 - u1) / -u1), abs=0.02)
-
-
-@pytest.mark.slow
-def test_fifty_times_real_time() -> None:
-    full = scenario.load("jet_ski/low_turns_l1")
-    run(full)
-    begin = time.process_time()
-    run(full)
-    assert full.file.duration / (time.process_time() - begin) > 50.0
 
 
 # ---- margins
