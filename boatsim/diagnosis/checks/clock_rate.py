@@ -63,6 +63,8 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
     for together in wandering:
         uneven += together
         names = {files[file] for file in together}
+        if len(together) == len(np.unique(compared.file)):
+            names = set(files)  # those without any turn, too
         ours = [recording for recording in examined if recording.origin in names]
         own = compared.selected(np.isin(compared.file, together))
         for finding in _wander(ours, gain if wrong_gain else 1.0, own, config):
@@ -80,7 +82,10 @@ def check_clock_rate(recordings: Sequence[Recording], config: ChecksConfig) -> l
 
 
 def _wandering_files(compared: RateComparison, config: ChecksConfig) -> list[list[int]]:
-    """Files whose clocks run unevenly: each that shows it alone, and others that do together."""
+    """Files whose clocks run unevenly: each that shows it alone, and others that do together.
+
+    Where no file with enough stretches runs evenly, all have the clock of one logger.
+    """
     alone, rest = list[list[int]](), list[int]()
     for file in np.unique(compared.file).tolist():
         own = compared.selected(compared.file == file)
@@ -88,6 +93,8 @@ def _wandering_files(compared: RateComparison, config: ChecksConfig) -> list[lis
             alone.append([file])
         else:
             rest.append(file)
+    if alone and not any(_runs_evenly(compared, file, config) for file in rest):
+        return [sorted([*rest, *(file for files in alone for file in files)])]
     others = compared.selected(np.isin(compared.file, rest))
     if len(others.track) < config.clock_min_stretches or not others.agrees(config):
         return alone
@@ -101,6 +108,13 @@ def _wandering_files(compared: RateComparison, config: ChecksConfig) -> list[lis
     if together:
         alone.append(together)
     return alone
+
+
+def _runs_evenly(compared: RateComparison, file: int, config: ChecksConfig) -> bool:
+    """Whether the rates of a file do not vary alike, although it has enough stretches for that."""
+    own = compared.selected(compared.file == file)
+    enough = len(own.track) >= config.clock_min_stretches
+    return enough and own.correlation < config.clock_min_correlation
 
 
 def _constant_rates(

@@ -87,6 +87,20 @@ def test_only_the_recordings_whose_clock_wanders_are_named(
     assert lines == [f"[runs.{found[0].run}]", 'clock = "motion"']
 
 
+def test_a_recording_without_turns_has_the_clock_of_the_others() -> None:
+    logs = []
+    for k in range(4):
+        log = winding_ship(20 + k, 1200, 1.0)
+        log = replace(stamped(log, wandering_rate(log.t, 0.1, k)), name=f"run_{k}")
+        if k == 3:  # too few turns to show it
+            kept = log.t < log.t[0] + 0.1 * (log.t[-1] - log.t[0])
+            signals = {name: values[kept] for name, values in log.signals.items()}
+            log = replace(log, t=log.t[kept], signals=signals)
+        logs.append(log)
+    found = check_clock_rate(logs, DEFAULT.checks)
+    assert {f.run for f in found if f.name == "clock_wanders"} == {f"run_{k}" for k in range(4)}
+
+
 def test_a_wandering_clock_does_not_hide_a_slow_one() -> None:
     logs = []
     for k, ship in enumerate(fleet(4)):
