@@ -5,8 +5,8 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param, preset_effect
+from boatsim.physics.effects.thrust_with_voltage import nominal_reading
 from boatsim.physics.kinds.channel import DEEDS
 from boatsim.physics.param import UNSET
 
@@ -102,20 +102,7 @@ class ThrustWithSupplyCurrent(ChannelEffect):
         Raises:
             BadInput: The neutral values are not above 0, or are not the same.
         """
-        neutral = {name: vessel.neutral_value(name) for name in self.fed_by}
-        for name, value in neutral.items():
-            if not value > 0.0:
-                raise BadInput(
-                    f"{vessel.name}: measured.{name}: neutral = {value:g}; allowed is the nominal "
-                    f"current, more than 0, or {self.name} needs nominal"
-                )
-        if len(set(neutral.values())) > 1:
-            listed = ", ".join(f"{name} {value:g} A" for name, value in neutral.items())
-            raise BadInput(
-                f"{vessel.name}: {self.name}: nominal currents {listed}; allowed is one for all: "
-                "add one effect for each"
-            )
-        return {"nominal": next(iter(neutral.values()), 0.0)}
+        return {"nominal": nominal_reading(self, vessel, "current")}
 
 
 ShaftWithSupplyCurrent = preset_effect(

@@ -52,6 +52,34 @@ def transform_signal(
     return SignalSegment(x.begin * factor, x.middle * factor, x.end * factor)
 
 
+def nominal_reading(effect: ChannelEffect, vessel: Boat, quantity: str) -> float:
+    """Return the neutral value of the measured quantities that feed an effect, in their unit.
+
+    Args:
+        effect: The effect.
+        vessel: Vessel on which it acts.
+        quantity: Name of the quantity in messages, such as "voltage".
+
+    Raises:
+        BadInput: The neutral values are not above 0, or are not the same.
+    """
+    unit = type(effect).measured_unit
+    neutral = {name: vessel.neutral_value(name) for name in effect.fed_by}
+    for name, value in neutral.items():
+        if not value > 0.0:
+            raise BadInput(
+                f"{vessel.name}: measured.{name}: neutral = {value:g}; allowed is the nominal "
+                f"{quantity}, more than 0, or {effect.name} needs nominal"
+            )
+    if len(set(neutral.values())) > 1:
+        listed = ", ".join(f"{name} {value:g} {unit}" for name, value in neutral.items())
+        raise BadInput(
+            f"{vessel.name}: {effect.name}: nominal {quantity}s {listed}; allowed is one for all: "
+            "add one effect for each"
+        )
+    return next(iter(neutral.values()), 0.0)
+
+
 @dataclass(frozen=True)
 class ThrustWithVoltage(ChannelEffect):
     """Thrust that grows with a power k of the measured voltage V of the supply.
@@ -106,20 +134,7 @@ class ThrustWithVoltage(ChannelEffect):
         Raises:
             BadInput: The neutral values are not above 0, or are not the same.
         """
-        neutral = {name: vessel.neutral_value(name) for name in self.fed_by}
-        for name, value in neutral.items():
-            if not value > 0.0:
-                raise BadInput(
-                    f"{vessel.name}: measured.{name}: neutral = {value:g}; allowed is the nominal "
-                    f"voltage, more than 0, or {self.name} needs nominal"
-                )
-        if len(set(neutral.values())) > 1:
-            listed = ", ".join(f"{name} {value:g} V" for name, value in neutral.items())
-            raise BadInput(
-                f"{vessel.name}: {self.name}: nominal voltages {listed}; allowed is one for all: "
-                "add one effect for each"
-            )
-        return {"nominal": next(iter(neutral.values()), 0.0)}
+        return {"nominal": nominal_reading(self, vessel, "voltage")}
 
 
 ShaftWithVoltage = preset_effect(
