@@ -14,6 +14,7 @@ from boatsim.fmu.sensors import SensorSuite, sensor_source, sensor_tables
 from boatsim.fmu.variables import Variable
 from boatsim.physics.commands import input_vector
 from boatsim.physics.kernel.records import FleetArrays
+from boatsim.physics.kinds.motion_memory import effects_with_motion_memory
 from boatsim.physics.native.entries import RECORDS
 from boatsim.physics.native.kinds import MATRIX, REAL, ROWS, VECTOR, WHOLE, Kind
 from boatsim.physics.native.translate import Translation
@@ -115,8 +116,8 @@ def program_source(
     """
     if program.module.HAS_ADVANCE_MOTION_MEMORY:
         raise BadInput(
-            f"{program.vessel.name}: an FMU takes no effect with a memory of the motion, such as "
-            "radiation_memory"
+            f"{program.vessel.name}: an FMU takes no effect with a memory of the motion: "
+            f"{effects_with_motion_memory(program.vessel.effects)}"
         )
     parts = [
         "/* The equations of motion of a vessel, translated by boatsim; not meant to be edited. */",

@@ -5,6 +5,7 @@ from types import ModuleType
 
 from boatsim.errors import BadInput
 from boatsim.physics import cache
+from boatsim.physics.kinds.motion_memory import effects_with_motion_memory
 from boatsim.physics.program import Program
 from boatsim.warp.kernels import ALONE, FORCES, HEAD, PARTS
 from boatsim.warp.translate import NotTranslatable, Translation
@@ -33,8 +34,8 @@ def translated_source(program: Program, real: str) -> str:
     code, translation = program.module, Translation()
     if code.HAS_ADVANCE_MOTION_MEMORY:
         raise BadInput(
-            f"{program.vessel.name}: a batch on Warp takes no effect with a memory of the motion, "
-            "such as radiation_memory"
+            f"{program.vessel.name}: a batch on Warp takes no effect with a memory of the motion: "
+            f"{effects_with_motion_memory(program.vessel.effects)}"
         )
     try:
         for name, kinds in ENTRIES.items():

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from boatsim.cli.commands import app
 from boatsim.errors import BadInput
 from boatsim.fmu.archive import FMI_VERSIONS, model_identifier, text_files, write_fmu
+from boatsim.fmu.source import program_source
 from boatsim.fmu.surroundings import with_surroundings
 from boatsim.fmu.units import base_unit
 from boatsim.fmu.variables import quoted_name, vessel_variables
@@ -132,6 +133,22 @@ def test_each_unit_of_the_library_is_known_in_base_units() -> None:
     assert base_unit("rpm").factor == pytest.approx(2 * np.pi / 60)
     with pytest.raises(BadInput, match="'furlong' is not known"):
         base_unit("furlong/s")
+
+
+def test_an_effect_that_remembers_the_motion_is_refused_by_its_name() -> None:
+    waves = {"use": "heave_radiation", "name": "waves", "damping": 80.0, "frequency": 6.1}
+    boat = Vessel.from_effects(
+        name="raft",
+        dof=("heave",),
+        length=2.0,
+        beam=0.8,
+        draught=0.2,
+        body={"mass": 120.0, "roll_inertia": 8.0, "yaw_inertia": 40.0},
+        channels={},
+        effects=[{"use": "added_mass", "heave": 60.0}, waves],
+    )
+    with pytest.raises(BadInput, match="an FMU takes no effect with a memory of the motion: waves"):
+        program_source(Program(boat), [], 0.02, "token")
 
 
 def test_names_are_quoted_where_fmi_requires_it() -> None:

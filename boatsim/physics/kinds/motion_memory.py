@@ -1,13 +1,13 @@
 """Motion memory: forces that depend on the past motion of the hull, by states of their own."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from boatsim.physics.kinds.channel import WHOLE
-from boatsim.physics.kinds.effect import InsertionPoint, ProgramFunction, ProgramLayout
+from boatsim.physics.kinds.effect import Effect, InsertionPoint, ProgramFunction, ProgramLayout
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.signals import Motion, Wrench
 
@@ -80,3 +80,12 @@ class MotionMemory(Force):
         table = np.array([*self.table(), 0.0])
         first = np.int64(0)
         return Wrench(*type(self).law(m, self.values(), act, first, first, table, first))
+
+
+def effects_with_motion_memory(effects: Iterable[Effect]) -> str:
+    """Return the names of the effects of a vessel that have a memory of the motion, for messages.
+
+    Args:
+        effects: Effects of the vessel.
+    """
+    return ", ".join(effect.name for effect in effects if isinstance(effect, MotionMemory))
