@@ -13,6 +13,8 @@ from boatsim.physics.estimate.base import HullParticulars
 from boatsim.physics.estimate.displacement import hull_particulars
 
 MAX_ANGLE = 0.7  # [rad] 40 deg, the usual limit of rudders and outboards
+MAX_RUDDER_ANGLE = 90.0  # [deg] across the hull
+MAX_AZIMUTH = 360.0  # [deg] a full turn to either side
 # Relative standard deviation of a mass that was not weighed: assumed, as crew, fuel and gear of
 # a small boat change from day to day
 MASS_SD = 0.1
@@ -139,14 +141,23 @@ class Particulars:
         return _numbered(places, self.tunnels)
 
     def named_thrusters(self) -> list[tuple[str, Mount]]:
-        """Return the thrusters of the boat with names by side, numbered if a side has several.
+        """Return the thrusters of the boat with names by their places.
 
-        A single one is `motor`.
+        A single one is `motor`, others are named by their side. Two on one side, or two in the
+        middle, are `forward` and `aft`; more of them are numbered.
         """
-        sides = list(map(_side_name, self.thrusters))
-        if len(sides) == 1:
+        if len(self.thrusters) == 1:
             return [("motor", self.thrusters[0])]
-        return _numbered(sides, self.thrusters)
+        sides = list(map(_side_name, self.thrusters))
+        names = []
+        for side, mount in zip(sides, self.thrusters, strict=True):
+            places = [m.x for m, other in zip(self.thrusters, sides, strict=True) if other == side]
+            if len(places) != 2 or places[0] == places[1]:
+                names.append(side or "middle")
+                continue
+            end = "forward" if mount.x == max(places) else "aft"
+            names.append(f"{side}_{end}" if side else end)
+        return _numbered(names, self.thrusters)
 
 
 def _numbered(names: list[str], mounts: tuple[Mount, ...]) -> list[tuple[str, Mount]]:
@@ -163,7 +174,7 @@ def _numbered(names: list[str], mounts: tuple[Mount, ...]) -> list[tuple[str, Mo
 
 def _side_name(mount: Mount) -> str:
     if mount.y == 0:
-        return "middle"
+        return ""
     return "starboard" if mount.y > 0 else "port"
 
 
@@ -244,7 +255,7 @@ def parse_particulars(
         rudder=blade,
         tunnels=tuple(_parse_tunnel(text, length) for text in options.tunnels),
         law=law,
-        helm=_parse_helm(options.helm),
+        helm=_parse_helm(options),
         mass_centre=options.balance,
         depth=options.depth,
         breadth_given=options.hull_beam is not None,
@@ -359,13 +370,21 @@ def _parse_tunnel(text: str, length: float) -> Mount:
     return Mount(x, 0.0, most, most)
 
 
-def _parse_helm(text: str | None) -> Helm:
-    """Range and rate of the steering from DEG[,DEG_PER_S]."""
+def _parse_helm(options: Options) -> Helm:
+    """Range and rate of the steering from DEG[,DEG_PER_S].
+
+    A drive without a rudder beside it may turn all around, and several times.
+    """
+    text = options.helm
     if text is None:
         return Helm()
     most, *rate = _parse_numbers("--helm", text, "DEG[,DEG_PER_S]", (1, 2))
-    if not 0.0 < most <= 90.0:
-        raise BadInput(f"--helm {text}; allowed is an angle of more than 0 to 90 deg")
+    largest = MAX_RUDDER_ANGLE if options.rudder is not None else MAX_AZIMUTH
+    if not 0.0 < most <= largest:
+        of = "a rudder" if options.rudder is not None else "drives that turn"
+        raise BadInput(
+            f"--helm {text}; allowed for {of} is an angle of more than 0 to {largest:g} deg"
+        )
     if rate and not 0.0 < rate[0] <= 1000.0:
         raise BadInput(f"--helm {text}; allowed is a rate of more than 0 to 1000 deg/s")
     if not rate:

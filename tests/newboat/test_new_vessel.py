@@ -246,6 +246,31 @@ def test_the_range_and_rate_of_a_helm_are_those_of_the_owner(tmp_path: Path) -> 
     assert limit is not None and limit.rate == pytest.approx(np.radians(3.0), rel=1e-3)  # type: ignore[attr-defined]
 
 
+def test_azimuth_drives_turn_all_around_and_are_named_by_their_ends(tmp_path: Path) -> None:
+    options = "--length 5 --beam 2.8 --mass 1670 --steered 1.8,0,500 --steered -1.8,0,500"
+    found = vessel.load_vessel(str(made(tmp_path / "ferry", f"{options} --helm 360,60")))
+    assert found.limits()["steer_forward_rad"] == pytest.approx((-2 * np.pi, 2 * np.pi), rel=1e-3)
+    act = settled(tmp_path / "ferry", {"thrust_aft_N": 100.0, "steer_aft_rad": np.pi})
+    assert act["thrust_aft_N"] == pytest.approx(100.0)
+    assert act["steer_aft_rad"] == pytest.approx(np.pi)
+
+
+@pytest.mark.parametrize(
+    "places, names",
+    [
+        ("1.8,0 -1.8,0", "forward aft"),
+        ("-1.2,0.5 -1.2,-0.5", "starboard port"),
+        ("1.8,-1 1.8,1 -1.8,-1 -1.8,1", "port_forward starboard_forward port_aft starboard_aft"),
+        ("0,-1 1,-1 -1,-1 0,1", "port1 port2 port3 starboard"),
+        ("-2,0 -1.8,-1 -1.8,1", "middle port starboard"),
+        ("-2,0.5", "motor"),
+    ],
+)
+def test_several_thrusters_are_named_by_side_and_end(places: str, names: str) -> None:
+    named = boat(length=5.0, beam=2.8, mass=1670.0, thrusters=places.split()).named_thrusters()
+    assert " ".join(name for name, _ in named) == names
+
+
 def test_a_curve_gives_the_thrust_of_its_table_and_commands_for_a_thrust(tmp_path: Path) -> None:
     folder = made(tmp_path / "curve", BOATS["curve"])
     for command, force in ((-100.0, -20.0), (5.0, 0.0), (30.0, 7.5), (75.0, 37.5)):
@@ -312,7 +337,14 @@ def test_the_beam_of_a_hull_sets_how_deep_a_catamaran_lies() -> None:
         ({"rudder": "0"}, "--rudder 0"),
         ({"name": "a b"}, "allowed are letters"),
         ({"rpm": -5.0}, "--rpm -5; allowed is more than 0"),
-        ({"helm": "100"}, "--helm 100; allowed is an angle of more than 0 to 90 deg"),
+        (
+            {"helm": "100", "rudder": "-1.4"},
+            "--helm 100; allowed for a rudder is an angle of more than 0 to 90 deg",
+        ),
+        (
+            {"helm": "720"},
+            "--helm 720; allowed for drives that turn is an angle of more than 0 to 360 deg",
+        ),
         ({"helm": "30,0"}, "allowed is a rate of more than 0"),
         ({"tunnels": ["1"]}, "--tunnel 1; allowed is X,MAX_N"),
         ({"tunnels": ["9,50"]}, "--tunnel 9,50; allowed is a place within the length"),

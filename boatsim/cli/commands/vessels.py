@@ -67,7 +67,8 @@ def new(
         str | None,
         typer.Option(
             metavar="DEG[,DEG_PER_S]",
-            help="Largest angle and rate of the rudder or of steerable thrusters [default: 40].",
+            help="Largest angle and rate of the rudder or of thrusters that turn, 360 for azimuth "
+            "drives [default: 40].",
         ),
     ] = None,
     draught: Annotated[

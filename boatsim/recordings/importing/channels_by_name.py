@@ -8,7 +8,13 @@ from boatsim.recordings.importing.channel_units import is_steering_channel, unit
 from boatsim.recordings.importing.channels import VesselChannel
 from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import is_constant
-from boatsim.recordings.importing.signal_words import HELM, ORDERED, side_from_tokens, tokenize_name
+from boatsim.recordings.importing.signal_words import (
+    HELM,
+    ORDERED,
+    end_from_tokens,
+    side_from_tokens,
+    tokenize_name,
+)
 from boatsim.recordings.importing.single_axis import is_load_of_channel
 from boatsim.recordings.importing.turning import Turning
 
@@ -166,9 +172,12 @@ def _name_similarity(drive: VesselChannel, g: Classification) -> float:
         return 10.0
     theirs = g.tokens | frozenset(tokenize_name(g.signal.about))
     ours = frozenset(tokenize_name(drive.name))
-    mine, other = side_from_tokens(ours), side_from_tokens(theirs)
-    opposite = mine != other and "" not in (mine, other)
-    if opposite or not units_are_compatible(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
+    if not units_are_compatible(drive, g) or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
-    special = (mine == other and mine != "") + bool(ours & HELM) + is_load_of_channel(theirs, ours)
+    special = bool(ours & HELM) + is_load_of_channel(theirs, ours)
+    for place_from_tokens in (side_from_tokens, end_from_tokens):
+        mine, other = place_from_tokens(ours), place_from_tokens(theirs)
+        if mine != other and "" not in (mine, other):
+            return 0.0
+        special += mine == other and mine != ""
     return 1.0 * special + 0.5 * len(ours & theirs)

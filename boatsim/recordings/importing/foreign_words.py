@@ -89,6 +89,8 @@ MEANINGS = {
         "steuerbord steuerbords tribord estribor dritta stuurboord styrbord rechts rechter rechte "
         "droite droit derecha derecho destra destro direita høyre højre höger"
     ),
+    "bow": "bug proue proa prua boeg baug vorn avant",
+    "stern": "heck poupe popa poppa hekk agter akter achtern hinten arrière",
     "time": (
         "zeit uhrzeit zeitstempel messzeit temps horodatage tiempo tid tidspunkt tijd tijdstip "
         "klokkeslett tidsstempel tempo"

@@ -31,6 +31,10 @@ SIDES = {
     **dict.fromkeys(("starboard", "stbd", "stb", "right", "sb"), "starboard"),
 }
 LETTERS = {"l": "port", "p": "port", "r": "starboard", "s": "starboard"}  # sides of drives
+ENDS = {
+    **dict.fromkeys(("bow", "forward", "fwd", "fore", "front"), "forward"),
+    **dict.fromkeys(("stern", "aft", "rear"), "aft"),
+}
 SATELLITES = set("gps gnss fix navsat rmc gga gll".split())
 SPEEDS = {"rate", "speed", "velocity", "vel"}
 
@@ -75,3 +79,9 @@ def side_from_tokens(tokens: frozenset[str]) -> str:
             if token in sides:
                 return sides[token]
     return ""
+
+
+def end_from_tokens(tokens: frozenset[str]) -> str:
+    """Return "forward", "aft" or "" by the words of a name for one end of the hull."""
+    found = {ENDS[token] for token in tokens if token in ENDS}
+    return found.pop() if len(found) == 1 else ""
