@@ -34,6 +34,10 @@ from boatsim.recordings.table import Recording
 FOLLOWED = 3.0
 AS_LOGGED = "as logged"
 REMARK = "lost their sign where force and moment ask for thrust astern"
+UNKNOWN = (
+    "have no sign where force and moment ask for thrust astern; they are used as logged, because "
+    "their laws do not fit what other recordings show"
+)
 
 
 def restore_order_signs(
@@ -66,7 +70,13 @@ def restore_order_signs(
         return list(recordings)
     restored = []
     for recording, own in zip(recordings, unsigned, strict=True):
-        restored.append(_restored(recording, own, found, gain) if own is not None else recording)
+        if own is None:
+            restored.append(recording)
+        elif found in own.possible:
+            restored.append(_restored(recording, own, found, gain))
+        else:
+            remark = f"{recording.origin}: {', '.join(own.laws)} {UNKNOWN}"
+            restored.append(replace(recording, remarks=(*recording.remarks, remark)))
     return restored
 
 
@@ -206,7 +216,8 @@ def _restored(recording: Recording, own: UnsignedOrders, found: str, gain: float
     """A recording with the signs of its orders, and a remark."""
     signals, changed = dict(recording.signals), np.zeros(len(recording.t), dtype=bool)
     for name, values in own.possible[found].items():
-        changed |= values != recording.signals[name]
+        before = recording.signals[name]
+        changed |= (values != before) & np.isfinite(before)
         signals[name] = values
     remark = (
         f"{recording.origin}: {', '.join(own.laws)} {REMARK} ({100.0 * changed.mean():.2g} % of "

@@ -105,7 +105,8 @@ class OutputErrorSearch:
         """
         fewer = self._fitted(remove_effect(self.problem, self.model, name))
         gain = fewer.evidence - self.best.evidence
-        if gain < self.config.effect_gain or self.held_out_ratio(fewer.model) > 1.0:
+        is_clear = gain >= self.config.effect_gain  # false if the simulations of both diverge
+        if not is_clear or self.held_out_ratio(fewer.model) > 1.0:
             return False
         self._accept(fewer)
         return True
@@ -284,7 +285,7 @@ class OutputErrorSearch:
 
     def _rms_ratio(self, found: Fit, reference: Fit) -> float:
         """Ratio of the rms errors of two vessels over held-out recordings."""
-        return error_ratio(self.problem, found, reference, self.held_out, self.horizon)
+        return rms_error_ratio(self.problem, found, reference, self.held_out, self.horizon)
 
     def _errors_of(self, reference: Fit) -> OutputErrors:
         """Errors of free runs over the fitted recordings in units of those of a vessel."""
@@ -347,7 +348,7 @@ def with_coefficients_of_file(found: Fit) -> Fit:
     return replace(found, theta=theta)
 
 
-def error_ratio(
+def rms_error_ratio(
     problem: Problem,
     found: Fit,
     reference: Fit,

@@ -13,7 +13,7 @@ from boatsim.diagnosis.open_set.refinement import refines_estimated_number
 from boatsim.diagnosis.output_error.errors import MODEL
 from boatsim.diagnosis.output_error.search import (
     OutputErrorSearch,
-    error_ratio,
+    rms_error_ratio,
     with_coefficients_of_file,
 )
 from boatsim.diagnosis.problem import Fit, Problem, free_parameter_values
@@ -47,7 +47,8 @@ def fit_to_simulations(
         ranking: Selected and described effects, with the adopted coefficients.
         candidates: Names of the candidates that may be added.
         held_out: Held-out recordings, at least one.
-        budget: Work that may be done; then no further effect is dropped or added.
+        budget: Work that may be done; then no further effect of the filter is dropped, and none
+            is added.
 
     Returns:
         The ranking with the vessels that predict best; the same one if nothing is unexplained.
@@ -64,7 +65,7 @@ def fit_to_simulations(
         refines = refines_estimated_number(problem, ranking.best, one.name)
         if not refines and one.name not in ranking.balanced:
             stated.append(one.name)
-    contradicted = contradicted_effects(problem, ranking.best, stated, held_out, first)
+    contradicted = contradicted_effects(problem, ranking.best, stated, held_out)
     kept = [name for name in stated if name not in contradicted]
     if kept:
         only_stated = _without_effects(problem, ranking.best, kept)
@@ -100,7 +101,6 @@ def contradicted_effects(
     best: Fit,
     stated: Sequence[str],
     held_out: Sequence[MappedRecording],
-    budget: SearchBudget | None = None,
 ) -> tuple[str, ...]:
     """Return those effects without which free runs are clearly more probable.
 
@@ -112,12 +112,11 @@ def contradicted_effects(
         best: Fit of the vessel model with some candidate effects.
         stated: Names of effects that are stated as causes.
         held_out: Held-out recordings, at least one.
-        budget: Work that may be done; None: that of the configuration.
     """
     found = list[str]()
     if not stated:
         return ()
-    search = OutputErrorSearch(problem, best, held_out, stated, budget)
+    search = OutputErrorSearch(problem, best, held_out, stated)
     for name in stated:
         if search.drop_if_clearly_better(name):
             found.append(name)
@@ -166,7 +165,7 @@ def _is_clearly_better(
 ) -> bool:
     """Whether a vessel predicts held-out recordings clearly better, and no group much worse."""
     horizon = free_run_horizon(problem, held_out)
-    ratio = error_ratio(problem, found, reference, held_out, horizon)
+    ratio = rms_error_ratio(problem, found, reference, held_out, horizon)
     if ratio * problem.config.simulate.better > 1.0:
         return False
     return not generalization.harmed_groups(problem, reference, found, held_out, horizon)

@@ -64,7 +64,7 @@ class RunErrors:
         """Return the scale of the errors of one signal of each family, of maximum likelihood.
 
         The maximum is reached by expectation maximisation from the medians. Families without an
-        error are left out.
+        error, and those recorded in diverging runs only, are left out.
         """
         scale = dict[str, float]()
         for family, squares in self.squares.items():
@@ -85,8 +85,10 @@ class RunErrors:
         used = weights > 0.0  # runs that do not diverge
         found = {}
         for family in scale:
-            total = float(np.sum(weights[used] * self.squares[family][used]))
-            found[family] = float(np.sqrt(total / np.sum(self.signals[family][used])))
+            signals = float(np.sum(self.signals[family][used]))
+            if signals > 0.0:
+                total = float(np.sum(weights[used] * self.squares[family][used]))
+                found[family] = float(np.sqrt(total / signals))
         return found
 
 
@@ -118,7 +120,8 @@ def log_likelihood_gain(
     """Return how much more probable free runs are by one model than by another [nats].
 
     The errors have Student's t distribution, with each recorded signal of a run as one observation.
-    The gain is minus infinity if a simulation diverges that does not with the reference.
+    The gain is minus infinity if a simulation diverges that does not with the reference. One that
+    diverges with the reference alone counts as the largest error of the other runs.
 
     Args:
         found: Errors of the model that is judged.
@@ -139,7 +142,8 @@ def typical_error_ratio(
 
     It is the geometric mean over the runs. Twice the scale is added to both errors in quadrature,
     as in Student's t distribution, so that neither a few large errors nor tiny ones decide. The
-    ratio is infinite if a simulation diverges that does not with the reference.
+    ratio is infinite if a simulation diverges that does not with the reference. One that diverges
+    with the reference alone counts as the largest error of the other runs.
 
     Args:
         found: Errors of the model that is judged.
@@ -155,8 +159,17 @@ def typical_error_ratio(
 def _change_of_logarithms(
     found: RunErrors, reference: RunErrors, scale: Mapping[str, float]
 ) -> Array:
-    """Change (R,) of the logarithm in the density of Student's t distribution, 0 where equal."""
+    """Change (R,) of the logarithm in the density of Student's t distribution, 0 where equal.
+
+    It is infinite where the model diverges alone, and 0 where both do. The change of a run in which
+    the reference diverges alone is limited by the largest other error, so that the other runs
+    count, too.
+    """
+    own, other = found.squared_distances(scale), reference.squared_distances(scale)
+    cured = np.isinf(other) & np.isfinite(own)
+    usual = other[np.isfinite(other)]
+    if len(usual):
+        other[cured] = np.maximum(own[cured], np.max(usual))
     with np.errstate(invalid="ignore"):
-        after = np.log(DEGREES_OF_FREEDOM + found.squared_distances(scale))
-        before = np.log(DEGREES_OF_FREEDOM + reference.squared_distances(scale))
+        after, before = np.log(DEGREES_OF_FREEDOM + own), np.log(DEGREES_OF_FREEDOM + other)
         return np.where(after == before, 0.0, after - before)  # both may diverge

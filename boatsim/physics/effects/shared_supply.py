@@ -42,14 +42,15 @@ def law(m: Any, q: Any, s: Any, t: Any, total: float) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return thrust_wrench_at_mount(-q.loss * total * t.gain * s.thrust, s, t)
+    lost = min(q.loss * total, 1.0)
+    return thrust_wrench_at_mount(-lost * t.gain * s.thrust, s, t)
 
 
 @dataclass(frozen=True)
 class SharedSupply(Force):
     """Loss of thrust in proportion to the thrust of the other drives on the same supply.
 
-    T_i = T_i0 (1 - loss sum_j |T_j| / T_others)
+    T_i = T_i0 (1 - min(loss sum_j |T_j| / T_others, 1))
 
     The supply is a battery whose voltage falls with the total load, an engine, or an intake of
     fans. The sum is over the other drives only, because a thrust curve measured with one drive at a
@@ -60,7 +61,8 @@ class SharedSupply(Force):
     """
 
     formula: ClassVar[str] = (
-        r"\Delta T_i = -k \, T_i \sum_{j \ne i} \frac{|T_j|}{T_o}, \quad T_o = \frac{n - 1}{n} "
+        r"\Delta T_i = -T_i \min\left(k \sum_{j \ne i} \frac{|T_j|}{T_o}, 1\right), \quad "
+        r"T_o = \frac{n - 1}{n} "
         r"\sum_j T_{j,\mathrm{full}}"
     )
     symbols: ClassVar = {"loss": "k", "full_others": "T_o"}

@@ -56,7 +56,7 @@ def law(m: Any, q: Any, s: Any, t: Any, p: Array, first: Any) -> Wrench:
     upright = sin(m.phi) * t.y + cos(m.phi) * below
     immersion = m.z - sin(m.theta) * t.x + cos(m.theta) * upright
     immersion += elevation_at_hull(t.x, t.y, m, q, p, first)
-    lost = q.loss * (1.0 - thrust_diminution(immersion / q.radius))
+    lost = min(q.loss * (1.0 - thrust_diminution(immersion / q.radius)), 1.0)
     return thrust_wrench_at_mount(-lost * t.gain * s.thrust, s, t)
 
 
@@ -64,7 +64,8 @@ def law(m: Any, q: Any, s: Any, t: Any, p: Array, first: Any) -> Wrench:
 class Ventilation(SeaParameters, Force):
     """Loss of thrust of a propeller that heave, pitch, roll or a wave bring near the surface.
 
-    dT = -loss (1 - beta) T,  beta = 1 - 0.675 (1 - 0.769 h / R)^1.258  for h < 1.3 R, else 1
+    dT = -min(loss (1 - beta), 1) T
+    beta = 1 - 0.675 (1 - 0.769 h / R)^1.258  for h < 1.3 R, else 1
 
     beta is at least 0. The immersion h of the shaft at the mount (x, y) is z + z_s in upright
     attitude, with the heave z and the depth z_s of the shaft at rest, plus the elevation of the
@@ -78,8 +79,8 @@ class Ventilation(SeaParameters, Force):
     """
 
     formula: ClassVar[str] = (
-        r"\begin{aligned} \Delta T &= -s \left(1 - \beta\right) g \, T, \quad \beta = "
-        r"\begin{cases} 1 & h \ge 1.3 \, R \\ \max\left(1 - 0.675 \left(1 - 0.769 \, "
+        r"\begin{aligned} \Delta T &= -\min\left(s \left(1 - \beta\right), 1\right) g \, T, "
+        r"\quad \beta = \begin{cases} 1 & h \ge 1.3 \, R \\ \max\left(1 - 0.675 \left(1 - 0.769 \, "
         r"\frac{h}{R}\right)^{1.258}, 0\right) & h < 1.3 \, R \end{cases} \\ h &= z - x \sin\theta "
         r"+ \left(y \sin\phi + z_s \cos\phi\right) \cos\theta + \eta(x, y, t) \end{aligned}"
     )

@@ -33,21 +33,32 @@ class WindEvidence(NamedTuple):
         frame: APPARENT or TRUE; "" if the motion does not show it.
         to_port: Whether the angle counts to port.
         unit: Unit of the speed as a word of expressions, "" for m/s; None if unknown.
+        goes_to: Whether the angle is the direction to which the wind goes.
     """
 
     frame: str = ""
     to_port: bool = False
     unit: str | None = None
+    goes_to: bool = False
 
 
 class _Reading(NamedTuple):
-    """One meaning of the angle: slope of the recorded wind on the velocity, and the scatter."""
+    """One meaning of the angle: slope of the recorded wind on the velocity, and the scatter.
+
+    A boat that moves meets the wind of her own speed from ahead: in m/s the slope is 1 for an angle
+    from which the wind comes, and -1 for one to which it goes.
+    """
 
     frame: str
     to_port: bool
     slope: float
     sd: float
     scatter: float
+
+    @property
+    def goes_to(self) -> bool:
+        """Whether the recorded wind falls with the speed of the boat against it."""
+        return self.slope < -LEAST_DEVIATIONS * self.sd
 
 
 def wind_evidence(
@@ -61,7 +72,7 @@ def wind_evidence(
 
     Args:
         speed: Speed of the wind, in the unit of the log.
-        angle: Direction from which it comes, with its unit.
+        angle: Its direction, with its unit.
         track: Motion by the positions; None if unknown.
         heading: The heading; None if unknown.
         frame: Frame that the names state; "" if they state none.
@@ -84,9 +95,9 @@ def wind_evidence(
     readings.sort(key=lambda one: one.scatter)
     best = readings[0]
     if all(best.scatter < LARGEST_SHARE * one.scatter for one in readings[1:]):
-        return WindEvidence(best.frame, best.to_port, _unit(best))
+        return WindEvidence(best.frame, best.to_port, _unit(best), best.goes_to)
     if frame:
-        return WindEvidence(frame, False, _unit(usual))
+        return WindEvidence(frame, False, _unit(usual), usual.goes_to)
     return WindEvidence()
 
 
@@ -160,10 +171,11 @@ def _unit(reading: _Reading) -> str | None:
     if reading.frame != APPARENT:
         return None
     slopes = {word: 1.0 / factor for word, factor in SPEED_WORDS.items()}
-    found = [w for w, s in slopes.items() if 1.0 / TOLERANCE < reading.slope / s < TOLERANCE]
+    own = -reading.slope if reading.goes_to else reading.slope
+    found = [w for w, s in slopes.items() if 1.0 / TOLERANCE < own / s < TOLERANCE]
     if len(found) != 1:
         return None
     for word, slope in slopes.items():
-        if word != found[0] and abs(reading.slope - slope) < LEAST_DEVIATIONS * reading.sd:
+        if word != found[0] and abs(own - slope) < LEAST_DEVIATIONS * reading.sd:
             return None
     return found[0]

@@ -21,11 +21,17 @@ FRAMES = {
 }  # word of a name -> frame
 SPEEDS = {"speed", "velocity", "vel", "strength", "aws", "tws", "kn", "m/s", "km/h", "mps", "kmh"}
 ANGLES = {"angle", "direction", "dir", "from", "awa", "twd", "deg", "rad", "bearing"}
+TO = {"to", "toward", "towards"}  # words of a direction to which the wind goes
 WINDS = {"wind", "aws", "awa", "tws", "twd", "anemometer"}
 # words of other quantities: a true wind relative to the bow, gusts, forecasts, north and east
 OTHER = {"twa", "gust", "forecast", "mean", "x", "y", "north", "east", "chill", "temperature"}
 LARGEST_ANGLE = 2.0 * np.pi + 0.3  # [rad] a larger number is in degrees
+HALF_TURN = " + 180 * deg"
 ASK_UNIT = "the unit of the speed is not stated: add * kn or * kmh unless it is m/s"
+ASK_SENSE = (
+    "its name says to which direction the wind goes, but the motion of the boat shows from which "
+    "it comes"
+)
 ASK_FRAME = "names and motion do not show whether it is relative to the bow or to north"
 
 
@@ -89,7 +95,7 @@ def _kind(words: Sequence[str]) -> str:
         return ""
     if {"true", "angle"} <= tokens:
         return ""  # relative to the bow, as TWA
-    if tokens & (ANGLES - {"deg", "rad"}):
+    if tokens & (ANGLES - {"deg", "rad"} | TO):
         return "angle"
     if tokens & SPEEDS:
         return "speed"
@@ -113,13 +119,10 @@ def _wind(
         if float(np.nanmax(np.abs(known))) > LARGEST_ANGLE:
             of_angle = "deg"
         notes.append(f"{'degrees' if of_angle else 'radians'} by the range of the direction")
-    shown = wind_evidence(
-        Classification(speed, log.signals[speed], "speed", unit, 0.0),
-        Classification(angle, log.signals[angle], "angle", of_angle, 0.0),
-        track,
-        heading,
-        _frame(speed),
-    )
+    of_speed = Classification(speed, log.signals[speed], "speed", unit, 0.0)
+    of_direction = Classification(angle, log.signals[angle], "angle", of_angle, 0.0)
+    shown = wind_evidence(of_speed, of_direction, track, heading, _frame(speed))
+    is_named_to = bool(set(tokenize_name(angle)) & TO)
     if not is_stated:
         if shown.unit is None:
             questions.append(ASK_UNIT)
@@ -132,11 +135,14 @@ def _wind(
         notes.append(f"{shown.frame} wind by the motion of the boat")
     if shown.to_port:
         notes.append("sign inverted, for by the motion of the boat it counts to port")
+    if is_named_to and shown.unit is not None and not shown.goes_to:
+        questions.append(ASK_SENSE)
+    elif is_named_to:
+        notes.append("half a turn added, for it is the direction to which the wind goes")
+    elif shown.goes_to:
+        notes.append("half a turn added, for by the motion of the boat the wind goes there")
     sign = "-" if shown.to_port else ""
-    return Wind(
-        shown.frame,
-        speed + (f" * {unit}" if unit else ""),
-        sign + angle + (f" * {of_angle}" if of_angle else ""),
-        notes,
-        questions,
-    )
+    direction = sign + angle + (f" * {of_angle}" if of_angle else "")
+    if is_named_to or shown.goes_to:
+        direction += HALF_TURN
+    return Wind(shown.frame, speed + (f" * {unit}" if unit else ""), direction, notes, questions)

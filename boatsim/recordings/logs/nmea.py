@@ -6,6 +6,7 @@ The time of day of one holds for the sentences after it.
 import re
 from collections.abc import Callable
 from datetime import UTC, date, datetime, time
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -143,6 +144,8 @@ def _sentences(
                 numbers[signal] = _float(sentence, attribute)
             if name == "MWV":
                 numbers = _wind_numbers(sentence, numbers)
+            elif name == "MWD":
+                numbers = _with_wind_in_knots(sentence, numbers)
         room.count_values(len(numbers) + 1)
         if name in NUMBERED:
             name += f"[{_float(sentence, NUMBERED[name]):.0f}]"
@@ -164,6 +167,13 @@ def _wind_numbers(sentence: Any, numbers: dict[str, float]) -> dict[str, float]:
         if name.startswith(frame):
             found[name] = value * unit if name.endswith("speed") else value
     return found
+
+
+def _with_wind_in_knots(sentence: Any, numbers: dict[str, float]) -> dict[str, float]:
+    """The numbers of a true wind, whose speed a sentence may state in knots only."""
+    if isfinite(numbers["true_wind_speed"]):
+        return numbers
+    return {**numbers, "true_wind_speed": _float(sentence, "wind_speed_knots") * UNITS["kn"]}
 
 
 class _Clock:

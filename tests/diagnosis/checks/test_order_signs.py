@@ -108,6 +108,16 @@ def test_sides_that_a_program_exchanges_astern_are_put_right(tmp_path: Path) -> 
         assert any("sides are exchanged" in remark for remark in found.remarks)
 
 
+def test_a_log_with_other_laws_than_the_judged_ones_is_used_as_logged(tmp_path: Path) -> None:
+    first, second = [logged_run(tmp_path, seed, astern=True, mirrored=True) for seed in (1, 2)]
+    signals = {**second.signals, CHANNELS[0]: 1.2 * second[CHANNELS[0]]}
+    other = replace(second, signals=signals)
+    found = restore_order_signs([first, other], load_vessel("otter"), 1)
+    assert any("sides are exchanged" in remark for remark in found[0].remarks)
+    assert all(np.array_equal(found[1][name], other[name]) for name in CHANNELS)
+    assert any("used as logged" in remark for remark in found[1].remarks)
+
+
 def test_drives_that_do_not_push_astern_stand_still(tmp_path: Path) -> None:
     logs = [logged_run(tmp_path, seed, astern=False) for seed in (1, 2)]
     for log, found in zip(logs, restore_order_signs(logs, load_vessel("otter"), 2), strict=True):

@@ -32,6 +32,10 @@ def test_the_loss_is_reached_at_full_load_of_the_others_in_either_direction() ->
         assert loss(own, 20.0, 0.0) == pytest.approx(0.15)
 
 
+def test_a_drive_loses_all_of_its_thrust_at_most() -> None:
+    assert loss(10.0, 80.0, -80.0) == pytest.approx(1.0)
+
+
 def test_the_full_load_follows_from_the_largest_commands() -> None:
     vessel = load_vessel("osv").with_effect({"use": "shared_supply", "loss": 0.1})
     supply = vessel.effect("shared_supply")

@@ -83,6 +83,13 @@ def test_a_stern_that_rises_loses_thrust_and_one_that_sinks_does_not() -> None:
     assert lost_thrust(effect, place, theta=0.1) == 0.0
 
 
+@pytest.mark.parametrize("height", [0.05, 0.2, 1.0])
+def test_a_propeller_that_draws_air_loses_all_of_its_thrust_at_most(height: float) -> None:
+    effect = Ventilation(loss=4.0, radius=0.1, shaft_depth=0.0)
+    lost = lost_thrust(effect, (-0.9, 0.0, 0.05), z=-height)
+    assert lost == pytest.approx(10.0)
+
+
 @pytest.mark.parametrize("spreading", [0.0, 2.0])
 def test_a_wave_counts_with_its_elevation_at_the_propeller(spreading: float) -> None:
     sea = {"significant_height": 0.3, "modal_period": 3.0, "toward": 0.7, "components": 20.0}

@@ -103,6 +103,8 @@ KN = 1852.0 / 3600.0
         ("apparent wind speed", 1.0, "apparent wind angle", "radians"),
         ("Windgeschwindigkeit scheinbar", 1.0 / 3.6, "Windwinkel scheinbar", "degrees to port"),
         ("wind_speed", KN, "wind_angle", "degrees around"),  # the frame is not stated
+        ("AWS", KN, "AWA", "degrees to which it goes"),
+        ("rel_wind_speed_kn", KN, "rel_wind_to_deg", "degrees to which it goes"),
     ],
 )
 def test_an_apparent_wind_of_several_loggers_is_imported_in_metres_and_radians(
@@ -113,6 +115,7 @@ def test_an_apparent_wind_of_several_loggers_is_imported_in_metres_and_radians(
     written = {
         "degrees to both sides": np.degrees(comes_from),
         "degrees around": np.degrees(comes_from) % 360.0,
+        "degrees to which it goes": np.degrees(comes_from + np.pi) % 360.0,
         "degrees to port": -np.degrees(comes_from) % 360.0,
         "radians": comes_from,
     }[form]

@@ -13,7 +13,12 @@ KN = 1852.0 / 3600.0
 
 
 def shown(
-    turn: float, factor: float = 1.0, frame: str = "", to_port: bool = False, true: bool = False
+    turn: float,
+    factor: float = 1.0,
+    frame: str = "",
+    to_port: bool = False,
+    true: bool = False,
+    goes_to: bool = False,
 ) -> WindEvidence:
     """Evidence of a boat of 2 m/s that turns by up to `turn` [rad] in a gusty wind."""
     rng = np.random.default_rng(2)
@@ -23,7 +28,7 @@ def shown(
     gusts = np.convolve(rng.standard_normal(len(T) + 19), np.ones(20) / 20, "valid")
     wind = -(5.0 + gusts) * np.exp(0.7j + 0.1j * np.roll(gusts, 100))
     air = wind if true else (wind - velocity) * np.exp(-1j * psi)
-    angle = np.angle(-air)
+    angle = np.angle(air if goes_to else -air)
     if to_port:
         angle = -angle
     signals = []
@@ -39,13 +44,19 @@ def shown(
 def test_a_boat_that_turns_shows_sense_and_unit_of_an_apparent_wind(
     unit: str, factor: float, to_port: bool, frame: str
 ) -> None:
-    assert shown(2.5, factor, frame, to_port) == ("apparent", to_port, unit)
+    assert shown(2.5, factor, frame, to_port) == ("apparent", to_port, unit, False)
+
+
+@pytest.mark.parametrize("to_port", [False, True])
+@pytest.mark.parametrize("frame", ["", "apparent"])
+def test_a_boat_that_turns_shows_an_angle_to_which_the_wind_goes(frame: str, to_port: bool) -> None:
+    assert shown(2.5, KN, frame, to_port, goes_to=True) == ("apparent", to_port, "kn", True)
 
 
 def test_a_wind_that_does_not_turn_with_the_boat_is_a_true_one_of_unknown_unit() -> None:
-    assert shown(2.5, KN, true=True) == ("true", False, None)
+    assert shown(2.5, KN, true=True) == ("true", False, None, False)
 
 
 @pytest.mark.parametrize("frame", ["", "apparent", "true"])
 def test_a_boat_on_a_straight_course_shows_nothing(frame: str) -> None:
-    assert shown(0.0, KN, frame) == (frame, False, None)
+    assert shown(0.0, KN, frame) == (frame, False, None, False)

@@ -42,3 +42,9 @@ def test_the_unit_and_the_reference_of_a_wind_are_read(
 def test_an_invalid_wind_is_left_out(tmp_path: Path) -> None:
     log = open_log(logged(tmp_path, "$WIMWV,214.8,R,10.0,N,V"))
     assert not any(name.startswith("MWV") for name in log.signals)
+
+
+def test_a_true_wind_that_is_stated_in_knots_only_is_read(tmp_path: Path) -> None:
+    log = open_log(logged(tmp_path, "$WIMWD,120.0,T,118.0,M,10.0,N,,"))
+    speed = log.signals["MWD.true_wind_speed"].values
+    assert speed[np.isfinite(speed)] == pytest.approx(10.0 * 1852.0 / 3600.0)
