@@ -135,7 +135,8 @@ def candidate_library(
         asked = source.requested and not kind.once_per  # a request names the kind, not the drive
         missing = missing_requirements(kind, vessel, known, source.table, least, asked)
         missing = missing or _missing_columns(kind, columns)
-        one_of_few = _is_error_of_one_of_few(kind, vessel, fewest) and not source.requested
+        one_of_few = _is_error_of_one_of_few(kind, vessel, fewest)
+        one_of_few = one_of_few and not source.requested and not _replaces_of_two(kind, vessel)
         if one_of_few and kind.of_two:
             missing = missing or f"{kind.of_two} describes the difference of two"
         later = (kind.tried_last or bool(kind.confounded_with)) and not source.requested
@@ -162,6 +163,14 @@ def candidate_library(
     check_bindings(together, f"{vessel.name}: library")
     placeholders = placeholder_effects(vessel, config.describe)
     return CandidateLibrary(tuple(entries.values()), placeholders, excluded, inapplicable, last)
+
+
+def _replaces_of_two(kind: type[Effect], vessel: Vessel) -> bool:
+    """Whether a fault of each drive replaces an effect that cannot act on the vessel (`of_two`)."""
+    if not kind.of_two or not _is_error_of_one_of_several(kind, vessel):
+        return False
+    other = load_class("effect", kind.of_two)
+    return bool(missing_requirements(other, vessel, vessel.diagnosis.facts, {"use": kind.of_two}))
 
 
 def _reason_not_tested_first(kind: type[Effect], name: str, one_of_few: bool) -> str:
@@ -242,7 +251,8 @@ def _sources(vessel: Vessel, own: Sequence[str], fewest: int) -> Iterator[_Sourc
     """
     for name in shipped_content_names("effect"):
         kind: type[Effect] = load_class("effect", name)
-        if has_single_candidates(kind, vessel, fewest) and not kind.tried_last:
+        are_single = has_single_candidates(kind, vessel, fewest) and not kind.tried_last
+        if are_single or _replaces_of_two(kind, vessel):
             yield from _sources_of_single_ones(name, kind, vessel, False)
         elif name not in own or not _is_error_of_one_of_several(kind, vessel):
             yield _Source({"use": name, **_measured_sources(kind, vessel)}, kind, False)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from answers import diagnosed, named
 from driven_boats import STEP, Drive, paused, trial_boat_runs
+from typer.testing import CliRunner
 
+from boatsim.cli.commands import app
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -44,6 +46,15 @@ def test_an_error_of_one_of_two_drives_is_tried_last() -> None:
     assert "thrust_imbalance" in library.inapplicable["drive_gain_error"]
     assert "only where a force stays unexplained" in library.excluded["drive_lag"]
     assert not any(name.startswith("drive_lag") for name in library.tested_names)
+
+
+def test_where_no_sides_differ_a_weak_drive_is_tested_by_itself(tmp_path: Path) -> None:
+    options = "--length 5 --beam 2.8 --mass 1670 --steered 1.8,0,500 --steered -1.8,0,500"
+    CliRunner().invoke(app, ["new", str(tmp_path / "ferry"), *options.split()])
+    library = candidate_library(vessel.load_vessel(str(tmp_path / "ferry")))
+    assert library.inapplicable["thrust_imbalance"] == "no drives on both sides"
+    tested = {name for name in library.tested_names if name.startswith("drive_")}
+    assert tested == {"drive_gain_error_forward", "drive_gain_error_aft"}
 
 
 def test_a_requested_one_is_a_candidate_for_each_drive() -> None:

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, ChannelEffect, SignalSegment, param
+from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param
 from boatsim.physics.kinds.channel import DEEDS
 
 
@@ -59,3 +59,12 @@ class ThrustImbalance(ChannelEffect):
         in_per_cent="the port side pushes {more} than commanded, the starboard side as much "
         "{opposite}",
     )
+
+    def missing_for_test(self, vessel: Boat) -> str:
+        """Return that the drives are not on both sides, if so; else "".
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
+        sides = {vessel.side(name) for name in vessel.target_actuators(self)}
+        return "" if {-1, 1} <= sides else "no drives on both sides"

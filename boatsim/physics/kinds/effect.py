@@ -102,7 +102,8 @@ class Effect(CheckedParameters):
     # effect for each of whose instances it is a candidate of its own; "actuator" for a channel
     # effect, which is one for each actuator on which it acts; tried last where there are two drives
     once_per: ClassVar[str] = ""
-    # effect that describes the same where there are two instances
+    # effect that describes the same where there are two instances; where it cannot act, this one is
+    # tested in its place
     of_two: ClassVar[str] = ""
     # effects that describe equal errors of all instances; one of them takes the place of several
     of_all: ClassVar[tuple[str, ...]] = ()
@@ -470,6 +471,9 @@ class Boat(Protocol):
 
     def names_of(self, name: str) -> list[str]:
         """Return the names of all effects of the vessel that have a given name or type."""
+
+    def side(self, channel: str) -> int:
+        """Return the side of the drive of a channel: -1 port, +1 starboard, 0 on the centreline."""
 
     def effects_of_type(self, idea: str) -> list[Effect]:
         """Return the vessel's effects of a type, and those that can stand for that type."""
