@@ -150,7 +150,7 @@ def _next_lines(out: Path, findings: Findings) -> list[str]:
     return [
         *lines,
         f"In 3D (with the viewer rerun): {typed_program('rerun')} {out / 'diagnosis.rrd'}",
-        f"Your own log: {boatsim} import LOG",
+        f"Your own boat: {boatsim} new --help; then your own log: {boatsim} import LOG",
     ]
 
 

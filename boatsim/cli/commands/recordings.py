@@ -163,7 +163,7 @@ def diagnose(
 ) -> int:
     """Identify the physical effects that the model of a vessel lacks, from recordings.
 
-    Settings of the method are changed with --set; boatsim/diagnosis/config.py lists them with unit,
+    Settings of the method are changed with --set; boatsim/diagnosis/config/ lists them with unit,
     default and reason, and diagnosis.json holds the values used.
     """
     from boatsim.cli import diagnosis as commands
