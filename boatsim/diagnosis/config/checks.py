@@ -66,6 +66,9 @@ class ChecksConfig:
         "Speed from which a boat counts as moving; one that is aground or at a line does not.",
         0.0,
     )
+    # The reference is the median of a recording, which needs no nominal voltage. The law of
+    # `thrust_with_voltage` limits the voltage to the same shares of the nominal one, in simulations
+    # too
     voltage_least_share: float = setting(
         0.5,
         "1",
