@@ -17,7 +17,6 @@ from boatsim.recordings.table import Recording
 VOLTAGE_OUTLIERS = "are far from the usual voltage"  # phrase of the remark
 CURRENT_OUTLIERS = "jump from the readings around them by more than the largest current"
 UNITS = ("V", "A")
-FEWEST = 3  # readings of a median
 ROUNDING = 1e-6  # of a number of rows, by steps such as 0.1 s
 
 
@@ -98,9 +97,9 @@ def current_outliers(
 
     The current of a drive varies between zero and its largest one, so that no reading is far from
     the usual one. An outlier differs from the median of the readings around it by more than the
-    largest of these medians. The median of three readings is that of a reading and its neighbours:
-    where the log is too slow for more, an outlier differs from both neighbours. A burst of thrust
-    may then be a single reading; if it repeats, it is no outlier.
+    largest of these medians. In a slow log fewer readings are used, at least three: the median of
+    three differs from the middle one only if this differs from both neighbours. A burst of thrust
+    may there be a single reading; if it repeats, it is no outlier.
 
     Args:
         t: Times (N,) of the readings [s].
@@ -112,15 +111,18 @@ def current_outliers(
         True (N,) for outliers; none where they are too large a part of the readings, or where the
         usual current is zero.
     """
-    if len(readings) < FEWEST:
+    if len(readings) < config.current_rows:
         return np.zeros(len(readings), dtype=np.bool_)
     step = float(np.median(np.diff(t)))
-    half = int(config.current_window * time_scale / step + ROUNDING) // 2
-    around = median_filter(readings, 2 * max(half, 1) + 1, mode="mirror")
-    largest = float(np.max(np.abs(around)))
+    usual = config.current_rows // 2
+    fitting = int(config.current_window * time_scale / step + ROUNDING) // 2
+    half = max(min(usual, fitting), 1)
+    beyond_ends = "mirror" if half > 1 else "nearest"  # an end has one neighbour only
+    around: Array = median_filter(readings, 2 * half + 1, mode=beyond_ends)
+    largest = float(np.max(np.abs(around[half:-half])))  # the ends count readings twice
     jump = np.abs(readings - around)
     outlier = jump > config.current_largest_jump * largest
-    if half == 0:
+    if fitting < usual:
         outlier[outlier] = ~_repeat(jump[outlier], config.current_repeated_ratio)
     return outlier & _are_few(outlier, config.current_outlier_share) & (largest > 0.0)
 
@@ -137,4 +139,4 @@ def _repeat(sizes: Array, ratio: float) -> NDArray[np.bool_]:
 
 def _are_few(outlier: NDArray[np.bool_], share: float) -> bool:
     """Whether outliers (N,) are at most a share of the readings: more are no errors of rows."""
-    return bool(outlier.mean() <= share)
+    return float(np.mean(outlier)) <= share

@@ -92,19 +92,25 @@ class ChecksConfig:
         0.0,
         0.5,
     )
+    current_rows: int = setting(
+        5,
+        "count",
+        "Readings of an electric current, itself included, with whose median a reading is "
+        "compared. A fault of an instrument lasts one or two rows.",
+        3,
+    )
     current_window: float = setting(
-        0.5,
+        1.0,
         "s",
-        "Time over which the median of an electric current is taken, with which a reading is "
-        "compared, on a hull of 1.2 m. A fault of an instrument lasts less than half of it, a "
-        "burst of thrust longer. At least three readings are used.",
+        "Longest time that these readings take on a hull of 1.2 m; in a slow log they are fewer. A "
+        "burst of thrust lasts longer than half of it.",
         low=0.01,
     )
     current_repeated_ratio: float = setting(
         2.0,
         "1",
         "Single readings of a current that jump by sizes within this ratio are repeated bursts of "
-        "thrust, not outliers, where the log has no three readings in that time. Errors of an "
+        "thrust, not outliers, where a log is too slow for that many readings. Errors of an "
         "instrument are of any size.",
         low=1.0,
     )

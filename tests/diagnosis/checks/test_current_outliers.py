@@ -95,10 +95,18 @@ def test_a_single_wild_reading_of_a_fast_log_is_the_only_outlier() -> None:
 
 
 def test_bursts_of_a_large_vessel_last_longer_by_the_law_of_froude() -> None:
-    t = 0.1 * np.arange(400)
-    bursts = np.where(t % 10.0 < 0.45, 60.0, 0.5)  # of five rows
+    t = 0.5 * np.arange(400)
+    bursts = np.where(t % 10.0 < 0.9, 60.0, 0.5)  # of two rows
+    bursts[:3] = 0.5
     assert not current_outliers(t, bursts).any()
-    assert current_outliers(t, bursts, time_scale=4.0).sum() == 20
+    assert current_outliers(t, bursts, time_scale=4.0).sum() == 38
+
+
+def test_a_wild_reading_next_to_the_first_one_is_an_outlier_and_hides_no_other() -> None:
+    t = np.arange(300.0)
+    wild = np.full(300, 0.3)
+    wild[[1, 150]] = 655.0, -80.0
+    assert np.flatnonzero(current_outliers(t, wild)).tolist() == [1, 150]
 
 
 def test_a_log_of_few_readings_is_checked_too() -> None:
