@@ -86,7 +86,7 @@ def _measured_lines(
             continue
         words = about.about or "measured, not commanded"
         if unit_of(name) == "V":
-            lines += voltage_lines(name, words, log)
+            lines += voltage_lines(name, words, about.neutral, log)
             continue
         if unit_of(name) == "A":
             lines += supply_current_lines(name, words, about.neutral, log)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
+from boatsim.recordings.known_values import filled
 
 NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
 STRETCH_ROWS = 10  # rows of a stretch: noise of single poses averages out, and wander shows
@@ -92,8 +93,8 @@ def motion_stretches(
     edges = _edges(np.isfinite(signals["x_m"]) & np.isfinite(signals["y_m"]), rows)
     if len(edges) < 4:
         return None
-    psi = _filled(t, signals["psi_rad"])
-    u, v, r = (_filled(t, signals[name]) for name in ("u_mps", "v_mps", "r_radps"))
+    psi = filled(t, signals["psi_rad"])
+    u, v, r = (filled(t, signals[name]) for name in ("u_mps", "v_mps", "r_radps"))
     north = _integral(t, u * np.cos(psi) - v * np.sin(psi))
     east = _integral(t, u * np.sin(psi) + v * np.cos(psi))
     track = np.stack([signals["x_m"][edges], signals["y_m"][edges]])
@@ -121,12 +122,6 @@ def _edges(fixed: NDArray[np.bool_], apart: int) -> NDArray[np.int64]:
         if not edges or row - edges[-1] >= apart:
             edges.append(row)
     return np.array(edges, dtype=np.int64)
-
-
-def _filled(t: Array, values: Array) -> Array:
-    """Values (N,) with those that were not measured interpolated."""
-    known = np.isfinite(values)
-    return np.interp(t, t[known], values[known])
 
 
 def _integral(t: Array, rate: Array) -> Array:

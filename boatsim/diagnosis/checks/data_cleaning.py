@@ -12,7 +12,6 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.checks.accelerometer_clock import POSE_CLOCK
-from boatsim.diagnosis.checks.current_outliers import CURRENT_OUTLIERS
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.interpolated_samples import (
     INTERPOLATED,
@@ -30,8 +29,11 @@ from boatsim.diagnosis.checks.repeated_values import (
     drop_repeated_values,
 )
 from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
-from boatsim.diagnosis.checks.supply_outliers import replace_supply_outliers
-from boatsim.diagnosis.checks.voltage_outliers import VOLTAGE_OUTLIERS
+from boatsim.diagnosis.checks.supply_outliers import (
+    CURRENT_OUTLIERS,
+    VOLTAGE_OUTLIERS,
+    replace_supply_outliers,
+)
 from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.physics.vessel import Vessel

@@ -66,6 +66,9 @@ class ChecksConfig:
         "Speed from which a boat counts as moving; one that is aground or at a line does not.",
         0.0,
     )
+    # The reference is the median of a recording, which needs no nominal voltage. The law of
+    # `thrust_with_voltage` limits the voltage to the same shares of the nominal one, in simulations
+    # too
     voltage_least_share: float = setting(
         0.5,
         "1",
@@ -93,8 +96,23 @@ class ChecksConfig:
         5,
         "count",
         "Readings of an electric current, itself included, with whose median a reading is "
-        "compared. A fault of an instrument lasts one or two rows, a burst of thrust longer.",
+        "compared. A fault of an instrument lasts one or two rows.",
         3,
+    )
+    current_window: float = setting(
+        1.0,
+        "s",
+        "Longest time that these readings take on a hull of 1.2 m; in a slow log they are fewer. A "
+        "burst of thrust lasts longer than half of it.",
+        low=0.01,
+    )
+    current_repeated_ratio: float = setting(
+        2.0,
+        "1",
+        "Single readings of a current that jump by sizes within this ratio are repeated bursts of "
+        "thrust, not outliers, where a log is too slow for that many readings. Errors of an "
+        "instrument are of any size.",
+        low=1.0,
     )
     current_largest_jump: float = setting(
         1.0,

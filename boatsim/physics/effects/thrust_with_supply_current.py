@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param, preset_effect
-from boatsim.physics.effects.thrust_with_voltage import nominal_reading
 from boatsim.physics.kinds.channel import DEEDS
 from boatsim.physics.param import UNSET
+from boatsim.physics.supply_readings import nominal_reading, scaled_signal
 
 
 @njit(inline="always")
@@ -43,8 +43,7 @@ def transform_signal(
     Returns:
         The signal of the actuator after the effect, over the same step.
     """
-    factor = current_factor(source, q)
-    return SignalSegment(x.begin * factor, x.middle * factor, x.end * factor)
+    return scaled_signal(x, current_factor(source, q))
 
 
 @dataclass(frozen=True)

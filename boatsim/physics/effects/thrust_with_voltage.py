@@ -5,14 +5,17 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Boat, ChannelEffect, SignalSegment, param, preset_effect
 from boatsim.physics.kinds.channel import DEEDS
 from boatsim.physics.param import UNSET
+from boatsim.physics.supply_readings import nominal_reading, scaled_signal
 
 # Range of the voltage over the nominal one. A battery under load stays well within it: lithium
 # cells between 3.0 and 4.2 V of nominally 3.7 V, a lead battery between 10.5 and 14.4 V of 12 V.
-# Other readings are errors of the instrument.
+# Other readings are errors of the instrument. The law holds for every run, simulated or recorded. A
+# diagnosis, in addition, replaces readings far from the median of a recording before it uses this
+# law (`voltage_least_share`, `voltage_largest_share`): the median stands for the voltage of that
+# recording, even where the vessel's file states no nominal one.
 LOWEST, HIGHEST = 0.5, 1.5
 
 
@@ -48,36 +51,7 @@ def transform_signal(
     Returns:
         The signal of the actuator after the effect, over the same step.
     """
-    factor = voltage_factor(source, q)
-    return SignalSegment(x.begin * factor, x.middle * factor, x.end * factor)
-
-
-def nominal_reading(effect: ChannelEffect, vessel: Boat, quantity: str) -> float:
-    """Return the neutral value of the measured quantities that feed an effect, in their unit.
-
-    Args:
-        effect: The effect.
-        vessel: Vessel on which it acts.
-        quantity: Name of the quantity in messages, such as "voltage".
-
-    Raises:
-        BadInput: The neutral values are not above 0, or are not the same.
-    """
-    unit = type(effect).measured_unit
-    neutral = {name: vessel.neutral_value(name) for name in effect.fed_by}
-    for name, value in neutral.items():
-        if not value > 0.0:
-            raise BadInput(
-                f"{vessel.name}: measured.{name}: neutral = {value:g}; allowed is the nominal "
-                f"{quantity}, more than 0, or {effect.name} needs nominal"
-            )
-    if len(set(neutral.values())) > 1:
-        listed = ", ".join(f"{name} {value:g} {unit}" for name, value in neutral.items())
-        raise BadInput(
-            f"{vessel.name}: {effect.name}: nominal {quantity}s {listed}; allowed is one for all: "
-            "add one effect for each"
-        )
-    return next(iter(neutral.values()), 0.0)
+    return scaled_signal(x, voltage_factor(source, q))
 
 
 @dataclass(frozen=True)
@@ -96,7 +70,7 @@ class ThrustWithVoltage(ChannelEffect):
         r"y = \left(\frac{V}{V_n}\right)^k x, \quad 0.5 \le \frac{V}{V_n} \le 1.5"
     )
     symbols: ClassVar = {"exponent": "k", "nominal": "V_n"}
-    words: ClassVar[str] = "the thrust decreases with the voltage of the supply"
+    words: ClassVar[str] = "the thrust falls when the voltage of the supply falls"
     shown_by: ClassVar[str] = "the same commands with a full and with an empty battery"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: thrust "
@@ -140,7 +114,7 @@ class ThrustWithVoltage(ChannelEffect):
 ShaftWithVoltage = preset_effect(
     ThrustWithVoltage,
     "ShaftWithVoltage",
-    words="the shaft rate decreases with the voltage of the supply",
+    words="the shaft rate falls when the voltage of the supply falls",
     shown_by="the same shaft commands with a full and with an empty battery",
     acts_on="shaft",
     frees={
@@ -156,8 +130,8 @@ ShaftWithVoltage = preset_effect(
 DriveLossWithVoltage = preset_effect(
     ThrustWithVoltage,
     "DriveLossWithVoltage",
-    words="the thrust or shaft rate of one drive decreases with the voltage of its supply, unlike "
-    "that of the others",
+    words="the thrust or shaft rate of one drive falls when the voltage of its supply falls, "
+    "unlike that of the others",
     shown_by="the same commands of this drive alone with a full and with an empty battery",
     acts_on="thrust|shaft",
     once_per="actuator",

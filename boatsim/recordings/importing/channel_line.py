@@ -8,6 +8,7 @@ from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.channel_units import (
     ALL_AROUND,
     HELM_EXCESS,
+    is_azimuth,
     is_thrust_by_revolutions,
     unit_of_signal,
 )
@@ -56,6 +57,13 @@ def channel_line(
             expression = g.name
         if turned:
             expression = f"-{expression}"
+        if drive and _turns_beyond(g, values, drive):
+            note += (
+                f"; CHECK: the vessel's {name} allows only {np.degrees(low):.0f} to "
+                f"{np.degrees(high):.0f} deg, the signal is {values.min():.0f} to "
+                f"{values.max():.0f} deg: set low and high of the channel in vessel.toml to the "
+                "range of the drive"
+            )
         return f"{toml_key(name)} = {toml_value(expression)}{note}"
     if turned:
         low, high = high, low
@@ -119,7 +127,7 @@ def scale_of_signal(
         return Scale((-largest, 0.0, largest), why, 2.0)
     span = max(abs(drive.low), abs(drive.high))
     if g.word == "deg" and unit_of(drive.name) == "rad":
-        if span > ALL_AROUND or np.radians(largest) <= HELM_EXCESS * span:
+        if span > ALL_AROUND or np.radians(largest) <= HELM_EXCESS * span or is_azimuth(g):
             return None
         why = "the wheel turns farther than the rudder; CHECK: full wheel, here the largest angle"
         return Scale((-largest, 0.0, largest), why)
@@ -148,6 +156,19 @@ def _is_raw_command(
     if g.word == "percent" and max(abs(drive.low), abs(drive.high)) != 100.0:
         return False
     return bool(drive.low <= values.min() and values.max() <= drive.high)
+
+
+def _turns_beyond(
+    g: Classification,
+    values: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]",
+    drive: VesselChannel,
+) -> bool:
+    """Whether a signal is the direction of a drive that the vessel's file lets turn less far."""
+    if unit_of(drive.name) != "rad" or not is_azimuth(g):
+        return False
+    span = max(abs(drive.low), abs(drive.high))
+    largest = np.radians(np.max(np.abs(values)))
+    return span <= ALL_AROUND and bool(largest > HELM_EXCESS * span)
 
 
 def expression_with_unit(g: Classification, name: str) -> str:

@@ -12,6 +12,8 @@ from boatsim.recordings.notes import unit_of
 
 ALL_AROUND = 3.1  # [rad] to each side: a thruster that turns around, whose angle may be counted on
 HELM_EXCESS = 1.05  # a wheel that turns farther than the rudder by more than this is geared to it
+AZIMUTHS = {"azimuth", "azi"}  # words of a drive that turns itself, without a geared wheel
+QUARTER_TURN = 90.0  # [deg] a signal with such a word may be that of a wheel up to here
 # Numbers of a helm are degrees if the largest is at least this share of full helm
 MIN_HELM_SHARE = 0.6
 UNITS_OF_KINDS = {
@@ -97,6 +99,17 @@ def with_unit_of_helm(g: Classification, drive: VesselChannel) -> Classification
     if MIN_HELM_SHARE * span < largest <= HELM_EXCESS * span and span < ALL_AROUND:
         return replace(g, word="deg")
     return g
+
+
+def is_azimuth(g: Classification) -> bool:
+    """Return whether a signal in degrees is the direction of a drive, by its name and its range.
+
+    Args:
+        g: The signal.
+    """
+    if g.word != "deg" or g.tokens.isdisjoint(AZIMUTHS):
+        return False
+    return float(np.nanmax(np.abs(g.signal.values))) > HELM_EXCESS * QUARTER_TURN
 
 
 def _kind_of(unit: str) -> str:

@@ -10,6 +10,7 @@ from boatsim.recordings.importing.channels_by_motion import Unnamed, match_unnam
 from boatsim.recordings.importing.channels_by_name import match_by_names, unassigned
 from boatsim.recordings.importing.command_remarks import (
     exchanged_side_lines,
+    open_line,
     unsigned_order_lines,
     unused_line,
 )
@@ -48,9 +49,12 @@ def command_lines(
     """
     channels = [drive.name for drive in drives]
     moving: list[Classification] = []
+    constant: list[Classification] = []
     for g in best.get("command", []):
         if g.name in channels or not is_constant(g):
             moving.append(g)
+        else:
+            constant.append(g)
     moving.sort(key=lambda g: _natural_sort_key(g.name))
     lines: list[str] = []
     if not drives:
@@ -84,10 +88,7 @@ def command_lines(
             lines.append(allocated[drive.name])
             continue
         if drive.name not in chosen:
-            lines.append(
-                f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal has a '
-                "similar name"
-            )
+            lines.append(open_line(drive, constant))
             continue
         g, why = chosen[drive.name]
         sense = 0.0

@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.files import toml_value
+from boatsim.files import toml_key, toml_value
 from boatsim.recordings.importing.channel_line import channel_line
-from boatsim.recordings.importing.channel_units import is_thrust_by_revolutions
+from boatsim.recordings.importing.channel_units import are_of_one_kind, is_thrust_by_revolutions
 from boatsim.recordings.importing.channels import SIDED, VesselChannel
+from boatsim.recordings.importing.channels_by_name import match_by_similarity
 from boatsim.recordings.importing.signal_classification import Classification
 from boatsim.recordings.importing.signal_text import expression_of, printable_name
 from boatsim.recordings.importing.signal_words import side_from_tokens, tokenize_name
@@ -100,3 +101,29 @@ def unused_line(g: Classification, drives: Sequence[VesselChannel]) -> str:
         if same_side and is_thrust_by_revolutions(drive, g):
             return f"# or by revolutions: {channel_line(drive.name, g, drive)}"
     return f"# not used: {printable_name(g.name)}"
+
+
+def open_line(drive: VesselChannel, constant: Sequence[Classification]) -> str:
+    """Return the comment of a channel that the owner must complete, and why it has no signal.
+
+    Args:
+        drive: The channel.
+        constant: Commands of the log that are constant and were therefore not proposed.
+    """
+    alike = list(match_by_similarity([drive], constant).values())
+    alike = alike or [g for g in constant if _may_command_side_of(drive, g)]
+    why = "no signal has a similar name"
+    if alike:
+        known = alike[0].signal.values[np.isfinite(alike[0].signal.values)]
+        why = (
+            f"the signal {printable_name(alike[0].name)} is constant ({known[0]:g}) and was "
+            "therefore not proposed"
+        )
+    return f'# {toml_key(drive.name)} = "..."  # {drive.low:g} to {drive.high:g}; {why}'
+
+
+def _may_command_side_of(drive: VesselChannel, g: Classification) -> bool:
+    """Whether a signal with another name has a unit and a side that suit a channel."""
+    side = side_from_tokens(frozenset(tokenize_name(drive.name)))
+    is_of_kind = are_of_one_kind(drive, g) or is_thrust_by_revolutions(drive, g)
+    return is_of_kind and side == side_from_tokens(g.tokens)

@@ -10,6 +10,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.conversion_state import ConversionState, signal_of
 from boatsim.recordings.importing.resample import clean_samples
 from boatsim.recordings.importing.water_speed_table import WaterSpeed
+from boatsim.recordings.known_values import filled
 
 NEEDED = ("x_m", "y_m", "psi_rad")
 FEWEST = 3  # points of a straight line
@@ -30,15 +31,18 @@ def current_columns(
         given: Speed through the water, window, and names of the columns.
 
     Raises:
-        BadInput: A pose is missing, or the speed has no value.
+        BadInput: A column of the pose, or the speed, has no value.
     """
-    missing = [name for name in NEEDED if name not in signals]
+    missing = []
+    for name in NEEDED:
+        if name not in signals or not np.isfinite(signals[name]).any():
+            missing.append(name)
     if missing:
-        raise BadInput(f"{work.file}: current needs {' and '.join(missing)}")
+        raise BadInput(f"{work.file}: current needs values of {' and '.join(missing)}")
     through = np.asarray(_speed(work, rows, "speed", given.speed), dtype=np.complex128)
     if given.across is not None:
         through += 1j * _speed(work, rows, "across", given.across)
-    x, y = (_filled(rows, signals[name]) for name in NEEDED[:2])
+    x, y = (filled(rows, signals[name]) for name in NEEDED[:2])
     psi = signals["psi_rad"]
     known = np.isfinite(psi)
     bow = np.exp(1j * np.interp(rows, rows[known], np.unwrap(psi[known])))
@@ -80,8 +84,3 @@ def _speed(work: ConversionState, rows: Array, key: str, text: str) -> Array:
     if not len(speed.t):
         raise BadInput(f"{work.file}: current.{key} = {text[:80]!r} has no value")
     return np.interp(rows, speed.t, speed.values)
-
-
-def _filled(rows: Array, values: Array) -> Array:
-    known = np.isfinite(values)
-    return np.interp(rows, rows[known], values[known])

@@ -5,33 +5,37 @@ import numpy as np
 from boatsim.recordings.importing.log import Log
 from boatsim.recordings.importing.measured_lines import SUPPLY, InputSignal, lines_of_input
 from boatsim.recordings.importing.signal_words import tokenize_name
+from boatsim.recordings.importing.supply_units import SmallerUnit, factor_and_note
 
 # words in the name of a voltage
 WORDS = {"voltage", "volt", "volts", "vbat", "vbatt", "vbus", "vsupply"}
-UNITS = {"V": "", "mV": " * 0.001"}  # of a log -> factor to volts
+# A voltage is about the nominal one: far larger whole numbers are in mV
+UNITS = {"V": SmallerUnit(1.0), "mV": SmallerUnit(0.001, 200.0)}
 
 
-def voltage_lines(column: str, about: str, log: Log) -> str:
+def voltage_lines(column: str, about: str, nominal: float, log: Log) -> str:
     """Return lines of a map that propose signals for a measured voltage.
 
     Args:
         column: Column of the measured voltage, such as `battery_V`.
         about: Description of the quantity.
+        nominal: Nominal voltage [V]; 0 if unknown.
         log: The log.
     """
-    return lines_of_input(column, about, voltage_inputs(log), SUPPLY)
+    return lines_of_input(column, about, voltage_inputs(log, nominal), SUPPLY)
 
 
-def voltage_inputs(log: Log) -> list[InputSignal]:
+def voltage_inputs(log: Log, nominal: float = 0.0) -> list[InputSignal]:
     """Return the voltages of a log with their expressions in V.
 
     Args:
         log: The log.
+        nominal: Nominal voltage [V]; 0 if unknown.
     """
     found = []
     for name in voltage_signals(log):
-        factor = UNITS.get(log.signals[name].unit, "")
-        found.append(InputSignal(name, name + factor))
+        factor, note = factor_and_note(name, log.signals[name], UNITS, nominal)
+        found.append(InputSignal(name, name + factor, note))
     return found
 
 

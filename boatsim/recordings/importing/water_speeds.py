@@ -12,7 +12,7 @@ from boatsim.recordings.importing.signal_units import stated_speed_unit
 from boatsim.recordings.importing.signal_words import tokenize_name
 from boatsim.recordings.importing.track import Track
 from boatsim.recordings.importing.unnamed_inputs import NewInput
-from boatsim.recordings.importing.water_speed_table import EAST, NORTH
+from boatsim.recordings.importing.water_speed_table import EAST, NORTH, WaterSpeed
 from boatsim.recordings.importing.wind_evidence import water_speed_unit
 
 CERTAIN = {"stw", "paddlewheel", "paddle"}
@@ -86,13 +86,14 @@ def current_table(
         return ""
     best = speeds[0]
     sign = "" if is_named and not best.is_open else "# "
+    window = WaterSpeed.model_fields["window"].default
     note = f"  # CHECK: {best.note}" if best.note else ""
     lines = [
         "",
         "# current: the velocity over ground less that through the water, along the bow",
         f"{sign}[current]",
         f"{sign}speed = {toml_value(best.expression)}{note}",
-        f"{sign}window = 30.0  # [s] over which it is averaged",
+        f"{sign}window = {window}  # [s] over which it is averaged",
     ]
     for one in speeds[1:]:
         lines.append(f"# or speed = {toml_value(one.expression)}")

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.checks.data_cleaning import cleaning_findings, prepare_recording
-from boatsim.diagnosis.checks.supply_outliers import replace_supply_outliers
-from boatsim.diagnosis.checks.voltage_outliers import voltage_outliers
+from boatsim.diagnosis.checks.supply_outliers import replace_supply_outliers, voltage_outliers
 from boatsim.physics.vessel import load_vessel
 from boatsim.physics.vessel.schema import MeasuredChannel
 from boatsim.recordings.table import Recording
@@ -29,7 +28,7 @@ def test_single_readings_far_from_the_others_are_interpolated_and_reported() -> 
     repaired = prepare_recording(recording(wrong), BOAT)
     assert repaired["battery_V"] == pytest.approx(VOLTS)
     (finding,) = (f for f in cleaning_findings(repaired) if f.name == "voltage_outliers")
-    assert finding.kind == "mended" and "3 of 400" in finding.evidence
+    assert finding.kind == "mended" and "2 of 399" in finding.evidence
 
 
 def test_a_voltage_that_falls_or_sags_under_load_is_left_alone() -> None:
@@ -42,6 +41,23 @@ def test_a_supply_that_was_off_for_long_is_no_outlier() -> None:
     off = np.where(T < 15.0, 0.0, VOLTS)
     assert not voltage_outliers(off).any()
     assert not voltage_outliers(np.zeros(50)).any()
+
+
+def test_values_that_were_not_measured_are_interpolated_and_are_no_outliers() -> None:
+    gap = np.where(np.arange(len(T)) == 100, np.nan, VOLTS)
+    repaired = prepare_recording(recording(gap), BOAT)
+    assert repaired["battery_V"] == pytest.approx(VOLTS)
+    assert not cleaning_findings(repaired)
+
+
+def test_outliers_are_a_share_of_the_readings_of_a_slower_instrument() -> None:
+    wrong = VOLTS.copy()
+    wrong[20] = 0.0
+    wrong[1::2] = np.nan
+    repaired = prepare_recording(recording(wrong), BOAT)
+    assert repaired["battery_V"] == pytest.approx(VOLTS, abs=0.01)
+    (finding,) = cleaning_findings(repaired)
+    assert "1 of 200" in finding.evidence
 
 
 def test_other_columns_in_volts_are_not_changed() -> None:

@@ -164,6 +164,28 @@ def test_a_wheel_is_the_angle_of_the_rudder_or_geared_to_it(limit, line):
     assert line in text
 
 
+@pytest.mark.parametrize(
+    ("name", "largest", "limit", "line"),
+    [
+        ("azimuth_port_deg", 180.0, 90.0, 'steer_port_rad = "azimuth_port_deg * deg"'),
+        ("azi_port_deg", 180.0, 90.0, 'steer_port_rad = "azi_port_deg * deg"'),
+        ("wheel_port_deg", 180.0, 90.0, 'steer_port_rad = { signal = "wheel_port_deg"'),
+        ("azimuth_port_deg", 90.0, 30.0, 'steer_port_rad = { signal = "azimuth_port_deg"'),
+    ],
+)
+def test_an_azimuth_beyond_the_range_of_its_channel_is_no_geared_wheel(name, largest, limit, line):
+    most = np.radians(limit)
+    drives = [VesselChannel("steer_port_rad", -most, most)]
+    (found,) = [
+        given
+        for given in propose_map(log_of(**{name: (-largest, largest)}), "v", drives).splitlines()
+        if given.startswith("steer_port_rad")
+    ]
+    assert found.startswith(line)
+    is_azimuth = name.startswith("azi") and largest > 90.0
+    assert ("allows only -90 to 90 deg" in found and "vessel.toml" in found) == is_azimuth
+
+
 def test_a_column_called_as_the_channel_is_that_channel_even_if_it_stands_still_and_no_other_kind_of_thing_is():
     drives = [VesselChannel("delta_rad", -0.7, 0.7), VesselChannel("n_rps", 0.0, 30.0)]
     signals = {"psi": (0.0, 3.0), "delta_rad": (-0.3, 0.3), "thrust_N": (39.0, 52.0)}

@@ -88,6 +88,13 @@ def test_a_current_that_is_negative_while_the_battery_gives_power_changes_its_si
     assert line.startswith('battery_A = "-battery_current"') and "sign inverted" in line
 
 
+@pytest.mark.parametrize(("usual", "rare"), [(0.2, -30.0), (-0.2, 30.0)])
+def test_rare_readings_or_a_small_offset_do_not_invert_a_current(usual: float, rare: float) -> None:
+    amperes = np.where(np.arange(200) % 20 == 0, rare, usual)
+    log = Log(Path("run.csv"), {"battery_current": Signal(np.arange(200.0), amperes, "A")})
+    assert proposed("battery_A", log) == 'battery_A = "battery_current"  # CHECK: battery'
+
+
 def test_each_drive_gets_the_current_that_is_called_like_it() -> None:
     log = log_of(current_motor_port=(30.0, "A"), current_motor_starboard=(31.0, "A"))
     assert '"current_motor_starboard"' in proposed("motor_starboard_A", log)

@@ -7,9 +7,13 @@ import numpy as np
 import pytest
 from raw_logs import imported
 
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.currents import slope_over_window
+from boatsim.recordings.importing.conversion_state import ConversionState
+from boatsim.recordings.importing.currents import current_columns, slope_over_window
 from boatsim.recordings.importing.log import Log, Signal
+from boatsim.recordings.importing.mapping import Map
+from boatsim.recordings.importing.water_speed_table import WaterSpeed
 from boatsim.recordings.importing.water_speeds import water_speeds_of_log
 
 T = np.arange(0.0, 240.0, 0.5)
@@ -95,3 +99,13 @@ def test_a_map_states_what_a_vessel_without_a_current_needs(tmp_path: Path) -> N
     recording, text = imported(tmp_path, vessel, {**columns, "STW_kn": ahead / KN})
     assert "# current_north_mps = { about" in text and "# [current]" in text
     assert "current_north_mps" not in recording.signals
+
+
+@pytest.mark.parametrize("empty", ["x_m", "psi_rad"])
+def test_a_column_of_the_pose_without_any_value_is_stated_in_one_line(empty: str) -> None:
+    log = Log(Path("run.csv"), {"STW": Signal(T, np.ones(len(T)))})
+    work = ConversionState(log, "map.toml", Map.model_construct(), {})
+    poses = {name: np.sin(0.1 * T) for name in ("x_m", "y_m", "psi_rad")}
+    poses[empty] = np.full(len(T), np.nan)
+    with pytest.raises(BadInput, match=f"map.toml: current needs values of {empty}$"):
+        current_columns(work, T, poses, WaterSpeed(speed="STW"))
