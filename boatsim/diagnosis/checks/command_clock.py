@@ -9,6 +9,7 @@ one late command explain this recording as well.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -19,7 +20,7 @@ from boatsim.diagnosis.checks.command_clock_differences import (
     clock_differences,
     delays_of_files,
 )
-from boatsim.diagnosis.checks.command_delays import DelayEstimator
+from boatsim.diagnosis.checks.command_delays import DelayEstimator, Parts, moving_commands
 from boatsim.diagnosis.checks.finding import (
     Finding,
     apply_corrections,
@@ -70,7 +71,7 @@ def check_command_clock(
             return []
         found = clock_differences(estimator, files, suspects)
         if found:
-            return [_finding(n, each, files[n][0], config) for n, each in found.items()]
+            return [_finding(n, each, files[n], config) for n, each in found.items()]
     return []
 
 
@@ -155,15 +156,15 @@ def _suspects(delays: Delays, count: int, estimator: DelayEstimator) -> dict[str
     return found
 
 
-def _finding(
-    name: str, found: ClockDifference, mapped: MappedRecording, config: ChecksConfig
-) -> Finding:
+def _finding(name: str, found: ClockDifference, parts: Parts, config: ChecksConfig) -> Finding:
     """The finding about one file."""
     seconds = found.seconds
     sense, adverb = "later", "late"
     if seconds < 0.0:
         sense, adverb = "earlier", "early"
-    commands = _moving_commands(mapped)
+    names = list(parts[0].program.vessel.commands)
+    commands = [names[column] for column in moving_commands(parts)]
+    signals = dict.fromkeys(chain.from_iterable(mapped.signals for mapped in parts))
     evidence = (
         f"the motion follows the commands {abs(seconds):.3f} +- {found.sd:.3f} s {sense} than in "
         f"the other {found.others} recordings, which agree with each other. Another lag of the "
@@ -174,17 +175,8 @@ def _finding(
         evidence,
         probability=config.probability_evident,
         changes=delay_corrections(commands, -seconds),
-        alternatives=((f"the sensors are {adverb}", delay_corrections(mapped.signals, seconds)),),
+        alternatives=((f"the sensors are {adverb}", delay_corrections(signals, seconds)),),
         words="the clock of the commands differs from that of the other recordings",
         run=name,
         of_run_only=True,
     )
-
-
-def _moving_commands(mapped: MappedRecording) -> list[str]:
-    """Names of the commands that change."""
-    found = []
-    for column, name in enumerate(mapped.program.vessel.commands):
-        if np.ptp(mapped.command_values[:, column]) > 0.0:
-            found.append(name)
-    return found

@@ -14,6 +14,7 @@ from boatsim.diagnosis.checks.command_delays import (
     DelayEstimator,
     Parts,
     Response,
+    moving_commands,
     with_response,
 )
 from boatsim.diagnosis.checks.drive_delays import best_drive_rival, common_lag
@@ -52,12 +53,16 @@ class ClockDifference:
 def delays_of_files(estimator: DelayEstimator, files: Mapping[str, Parts]) -> dict[str, Delay]:
     """Return the delays of the files that have a likeliest one.
 
+    A file in which no command changes has none.
+
     Args:
         estimator: Estimates the delays, with one vessel model for all files.
         files: Mapped recordings of each file.
     """
     found = {}
     for name, parts in files.items():
+        if not moving_commands(parts):
+            continue
         delay = estimator.delay(parts)
         if delay is not None:
             found[name] = delay

@@ -8,7 +8,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from boatsim.diagnosis.checks.command_delays import Delay, DelayEstimator, Parts, Response
+from boatsim.diagnosis.checks.command_delays import (
+    Delay,
+    DelayEstimator,
+    Parts,
+    Response,
+    moving_commands,
+)
 
 
 def common_lag(
@@ -59,8 +65,7 @@ def best_drive_rival(estimator: DelayEstimator, parts: Parts, usual: Response) -
         return estimator.log_likelihood(parts, usual._replace(lag=lag))
 
     found = [estimator.maximum(with_lag, 0.0, longest)[1]]
-    values = parts[0].command_values
-    for column in np.flatnonzero(np.ptp(values, axis=0) > 0.0).tolist():
+    for column in moving_commands(parts):
         one = usual._replace(only=column, only_lag=usual.lag)
         found.append(_best_delay_of_one(estimator, parts, one))
         found.append(_best_lag_of_one(estimator, parts, one, longest))

@@ -1,0 +1,102 @@
+"""What drives that differ in one file may explain is found wherever its log likelihood is largest."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from boatsim.diagnosis.checks.command_clock import _finding
+from boatsim.diagnosis.checks.command_clock_differences import ClockDifference, delays_of_files
+from boatsim.diagnosis.checks.command_delays import (
+    DelayEstimator,
+    Parts,
+    Response,
+    moving_commands,
+)
+from boatsim.diagnosis.checks.drive_delays import best_drive_rival
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.filter import MappedRecording
+from boatsim.diagnosis.recording_mapping import map_recording
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import load_vessel
+from boatsim.recordings.table import Recording
+
+OTTER = load_vessel("otter")
+PORT, STARBOARD = "n_port_radps", "n_starboard_radps"
+
+
+@dataclass(frozen=True)
+class Known(DelayEstimator):
+    """An estimator whose log likelihood is a known function of the response of the commands."""
+
+    value: Callable[[Response], float] = lambda response: 0.0
+
+    config = DEFAULT.checks
+    time_scale = 1.0
+
+    def log_likelihood(self, parts: Parts, response: Response) -> float:
+        return self.value(response)
+
+    def _sd(self, parts: Parts, delay: float, lag: float) -> float:
+        return 0.01
+
+
+def known(value: Callable[[Response], float]) -> Known:
+    return Known(SimpleNamespace(), SimpleNamespace(), value)
+
+
+def peak(at: float, height: float, width: float) -> Callable[[float], float]:
+    return lambda seconds: height * float(np.exp(-(((seconds - at) / width) ** 2)))
+
+
+def part(*moving: str, rows: int = 20) -> MappedRecording:
+    """Part of a file in which some commands change."""
+    t = 0.1 * np.arange(rows)
+    signals = {"x_m": 0.1 * t, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
+    for name in (PORT, STARBOARD):
+        signals[name] = 40.0 + 0.0 * t
+        if name in moving:
+            signals[name][rows // 2 :] = 60.0
+    return map_recording(Recording("part", t, signals), Program(OTTER, ()))
+
+
+def number(command: str) -> int:
+    return list(OTTER.commands).index(command)
+
+
+def test_a_command_moves_in_a_file_if_it_moves_in_any_part() -> None:
+    assert moving_commands([part(), part(STARBOARD)]) == [number(STARBOARD)]
+    assert moving_commands([part(PORT), part(STARBOARD)]) == [number(PORT), number(STARBOARD)]
+    assert moving_commands([part(), part()]) == []
+
+
+def test_a_file_without_a_command_that_moves_has_no_delay() -> None:
+    by_delay = peak(0.25, 10.0, 0.2)
+    estimator = known(lambda response: by_delay(response.delay))
+    files = {"idle": [part(), part()], "moving": [part(), part(PORT)]}
+    found = delays_of_files(estimator, files)
+    assert found.keys() == {"moving"}
+    assert found["moving"].seconds == pytest.approx(0.25, abs=1e-3)
+
+
+def test_the_finding_corrects_the_commands_of_all_parts() -> None:
+    found = ClockDifference(0.2, 0.01, 3, 5.0)
+    finding = _finding("log", found, [part(), part(STARBOARD), part(PORT)], DEFAULT.checks)
+    assert {change.column: change.delay for change in finding.changes} == {
+        PORT: -0.2,
+        STARBOARD: -0.2,
+    }
+
+
+def test_a_command_that_moves_in_a_later_part_alone_is_a_rival() -> None:
+    by_delay = peak(0.4, 7.0, 0.3)
+
+    def value(response: Response) -> float:
+        if response.only == number(STARBOARD):
+            return by_delay(response.only_delay)
+        return 0.0
+
+    found = best_drive_rival(known(value), [part(), part(STARBOARD)], Response())
+    assert found == pytest.approx(7.0, abs=1e-3)
