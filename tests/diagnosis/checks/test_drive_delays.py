@@ -10,12 +10,14 @@ import pytest
 from boatsim.diagnosis.checks.command_clock import _finding
 from boatsim.diagnosis.checks.command_clock_differences import ClockDifference, delays_of_files
 from boatsim.diagnosis.checks.command_delays import (
+    ALL,
+    Delay,
     DelayEstimator,
     Parts,
     Response,
     moving_commands,
 )
-from boatsim.diagnosis.checks.drive_delays import best_drive_rival
+from boatsim.diagnosis.checks.drive_delays import best_drive_rival, common_lag
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.recording_mapping import map_recording
@@ -100,3 +102,38 @@ def test_a_command_that_moves_in_a_later_part_alone_is_a_rival() -> None:
 
     found = best_drive_rival(known(value), [part(), part(STARBOARD)], Response())
     assert found == pytest.approx(7.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("only", [ALL, number(PORT)])
+def test_the_largest_of_several_maxima_of_a_lag_is_found(only: int) -> None:
+    """A search between both ends begins at 38 % of the interval, and finds the lower maximum."""
+    low, high = peak(0.35, 5.0, 0.15), peak(0.85, 9.0, 0.08)
+
+    def value(response: Response) -> float:
+        lag = response.lag if only == ALL else response.only_lag
+        return max(low(lag), high(lag)) if response.only == only else -50.0
+
+    found = best_drive_rival(known(value), [part(PORT)], Response())
+    assert found == pytest.approx(9.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("nowhere", [-1.0, 0.0])
+def test_a_rival_is_found_where_the_filter_diverges_with_others(nowhere: float) -> None:
+    by_delay = peak(0.4, 7.0, 0.3)
+
+    def value(response: Response) -> float:
+        if response.only == ALL or response.only_delay == nowhere:
+            return np.nan
+        return by_delay(response.only_delay)
+
+    assert best_drive_rival(known(value), [part(PORT)], Response()) == pytest.approx(7.0, abs=1e-3)
+
+
+def test_the_lag_of_all_drives_is_found_where_the_filter_diverges_without_a_lag() -> None:
+    by_lag = peak(0.2, 10.0, 0.1)
+
+    def value(response: Response) -> float:
+        return by_lag(response.lag) if response.lag > 0.0 else np.nan
+
+    files, delays = {"log": [part(PORT)]}, {"log": Delay(0.0, 0.01, 0.0)}
+    assert common_lag(known(value), files, delays) == pytest.approx(0.2, abs=0.01)
