@@ -49,7 +49,7 @@ def check_command_clock(
     Args:
         problem: The problem, whose recordings the vessel model is fitted to.
         fit: Fit of the vessel with refitted coefficients, without candidate effects.
-        recordings: Mapped recordings, fitted and held-out ones.
+        recordings: Mapped recordings of the problem, and then held-out ones.
         names: Their files; the parts of a file have one clock.
 
     Returns:
@@ -63,13 +63,14 @@ def check_command_clock(
         return []
     if has_measured_input(vessel):
         return []
+    fitted = names[: len(problem.recordings)]
     estimator = DelayEstimator(problem, fit)
     first = delays_of_files(estimator, files)
     for count in range(1, int(config.command_clock_max_share * len(first)) + 1):
         suspects = _suspects(first, count, estimator)
         if not suspects:
             return []
-        found = clock_differences(estimator, files, suspects)
+        found = clock_differences(estimator, files, suspects, fitted)
         if found:
             return [_finding(n, each, files[n], config) for n, each in found.items()]
     return []

@@ -1,14 +1,23 @@
-"""What drives that differ in one file may explain is found wherever its log likelihood is largest."""
+"""Delays, lags and differences of clocks follow from log likelihoods that are known functions.
+
+All commands of a file count, in whichever part they move, and all maxima of the log likelihood.
+"""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from boatsim.diagnosis.checks import command_clock_differences
 from boatsim.diagnosis.checks.command_clock import _finding
-from boatsim.diagnosis.checks.command_clock_differences import ClockDifference, delays_of_files
+from boatsim.diagnosis.checks.command_clock_differences import (
+    ClockDifference,
+    _refitted,
+    clock_differences,
+    delays_of_files,
+)
 from boatsim.diagnosis.checks.command_delays import (
     ALL,
     Delay,
@@ -53,15 +62,19 @@ def peak(at: float, height: float, width: float) -> Callable[[float], float]:
     return lambda seconds: height * float(np.exp(-(((seconds - at) / width) ** 2)))
 
 
-def part(*moving: str, rows: int = 20) -> MappedRecording:
+def part(*moving: str, name: str = "part") -> MappedRecording:
     """Part of a file in which some commands change."""
-    t = 0.1 * np.arange(rows)
+    t = 0.1 * np.arange(20)
     signals = {"x_m": 0.1 * t, "y_m": 0.0 * t, "psi_rad": 0.0 * t}
-    for name in (PORT, STARBOARD):
-        signals[name] = 40.0 + 0.0 * t
-        if name in moving:
-            signals[name][rows // 2 :] = 60.0
-    return map_recording(Recording("part", t, signals), Program(OTTER, ()))
+    for command in (PORT, STARBOARD):
+        signals[command] = 40.0 + 0.0 * t
+        if command in moving:
+            signals[command][10:] = 60.0
+    return map_recording(Recording(name, t, signals), Program(OTTER, ()))
+
+
+def without_positions(mapped: MappedRecording) -> bool:
+    return not np.isfinite(mapped.measured[:, mapped.signals.index("x_m")]).any()
 
 
 def number(command: str) -> int:
@@ -137,3 +150,83 @@ def test_the_lag_of_all_drives_is_found_where_the_filter_diverges_without_a_lag(
 
     files, delays = {"log": [part(PORT)]}, {"log": Delay(0.0, 0.01, 0.0)}
     assert common_lag(known(value), files, delays) == pytest.approx(0.2, abs=0.01)
+
+
+FILES = ("first", "second", "third", "late")
+MOVED = 0.2  # [s] by which the late file is corrected before its likeliest delay is sought again
+
+
+@dataclass(frozen=True)
+class Corrected(Known):
+    """Finds no further delay of corrected files; the heading alone may show one of the late file."""
+
+    by_heading: float = 0.0  # [s]
+    rival: float = 0.0  # log likelihood of the late file as recorded [nats]
+
+    def log_likelihood(self, parts: Parts, response: Response) -> float:
+        likeliest = 0.0
+        if parts[0].name == "late":
+            if parts[0].command_times[0] < 0.5 * MOVED:
+                return self.rival
+            if without_positions(parts[0]):
+                likeliest = self.by_heading
+        return peak(likeliest, 10.0, 0.2)(response.delay) - response.lag
+
+
+def differences(
+    monkeypatch: pytest.MonkeyPatch, first: MappedRecording | None = None, **numbers: float
+) -> dict[str, ClockDifference]:
+    problem = SimpleNamespace(recordings=[first])
+    estimator = Corrected(problem, SimpleNamespace(), **numbers)
+    monkeypatch.setattr(command_clock_differences, "_refitted", lambda *given: estimator)
+    files = {name: [part(PORT, name=name)] for name in FILES}
+    if first:
+        files["first"] = [first]
+    return clock_differences(estimator, files, {"late": MOVED}, FILES)
+
+
+def test_a_file_with_another_clock_differs_by_its_correction(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = differences(monkeypatch)
+    assert found.keys() == {"late"}
+    assert found["late"].seconds == pytest.approx(MOVED, abs=1e-3)
+    assert found["late"].lead == pytest.approx(10.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("rival", [8.0, np.nan, -np.inf])
+def test_a_rival_that_is_as_likely_or_unknown_refutes_another_clock(
+    rival: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert differences(monkeypatch, rival=rival) == {}
+
+
+def test_late_positions_are_no_clock_whatever_the_first_file_measures(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The heading of the file in question is then early after the correction."""
+    heading_alone = part(PORT, name="first")
+    heading_alone = replace(
+        heading_alone,
+        measured=heading_alone.measured[:, [heading_alone.signals.index("psi_rad")]],
+        signals=("psi_rad",),
+    )
+    for first in (None, heading_alone):
+        assert differences(monkeypatch, first, by_heading=-MOVED) == {}
+    assert differences(monkeypatch, heading_alone).keys() == {"late"}
+
+
+def test_the_vessel_is_fitted_to_recordings_of_which_the_suspects_are_corrected(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    recordings = [part(PORT, name="same"), part(name="same"), part(PORT, name="same")]
+    problem = SimpleNamespace(recordings=recordings, with_recordings=list)
+    monkeypatch.setattr(
+        command_clock_differences, "fit_baseline", lambda one: SimpleNamespace(recalibrated=one)
+    )
+    fitted = _refitted(
+        DelayEstimator(problem, SimpleNamespace()), {"late": MOVED}, ["a", "late", "late"]
+    )
+    for before, after, moved in zip(recordings, fitted.problem, (0.0, MOVED, MOVED), strict=True):
+        assert after.command_times == pytest.approx(before.command_times + moved)
+        assert np.array_equal(after.command_values, before.command_values)
