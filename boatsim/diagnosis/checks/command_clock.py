@@ -117,13 +117,15 @@ def recordings_with_one_clock(
 def candidates_besides_clocks(
     names: Sequence[str], loaded: LoadedRecordings, findings: Sequence[Finding]
 ) -> tuple[str, ...]:
-    """Return candidate effects without delays of the groups of corrected recordings.
+    """Return candidate effects without delays of groups of corrected recordings alone.
 
-    What the correction leaves of a delay, less than its uncertainty, is no second cause.
+    What the correction leaves of a delay, less than its uncertainty, is no second cause. Recordings
+    are corrected to the clock of the others, so that those of a group that needed no correction
+    determine a delay of the whole group as before.
 
     Args:
         names: Names of candidate effects.
-        loaded: The recordings.
+        loaded: The recordings; a delay of a group is fitted to the fitted ones.
         findings: Findings "command_clock" about them.
     """
     runs = {finding.run for finding in findings}
@@ -131,6 +133,9 @@ def candidates_besides_clocks(
     for recording in (*loaded.fitted, *loaded.held_out):
         if recording.origin in runs:
             groups.update(recording.notes.groups)
+    for recording in loaded.fitted:
+        if recording.origin not in runs:
+            groups.difference_update(recording.notes.groups)
     kept = []
     for name in names:
         if group_of(name) not in groups or without_group(name) not in CLOCK_EFFECTS:
