@@ -9,6 +9,7 @@ one late command explain this recording as well.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -19,7 +20,7 @@ from boatsim.diagnosis.checks.command_clock_differences import (
     clock_differences,
     delays_of_files,
 )
-from boatsim.diagnosis.checks.command_delays import DelayEstimator
+from boatsim.diagnosis.checks.command_delays import DelayEstimator, Parts, moving_commands
 from boatsim.diagnosis.checks.finding import (
     Finding,
     apply_corrections,
@@ -48,7 +49,7 @@ def check_command_clock(
     Args:
         problem: The problem, whose recordings the vessel model is fitted to.
         fit: Fit of the vessel with refitted coefficients, without candidate effects.
-        recordings: Mapped recordings, fitted and held-out ones.
+        recordings: Mapped recordings of the problem, and then held-out ones.
         names: Their files; the parts of a file have one clock.
 
     Returns:
@@ -62,15 +63,16 @@ def check_command_clock(
         return []
     if has_measured_input(vessel):
         return []
+    fitted = names[: len(problem.recordings)]
     estimator = DelayEstimator(problem, fit)
     first = delays_of_files(estimator, files)
     for count in range(1, int(config.command_clock_max_share * len(first)) + 1):
         suspects = _suspects(first, count, estimator)
         if not suspects:
             return []
-        found = clock_differences(estimator, files, suspects)
+        found = clock_differences(estimator, files, suspects, fitted)
         if found:
-            return [_finding(n, each, files[n][0], config) for n, each in found.items()]
+            return [_finding(n, each, files[n], config) for n, each in found.items()]
     return []
 
 
@@ -115,13 +117,15 @@ def recordings_with_one_clock(
 def candidates_besides_clocks(
     names: Sequence[str], loaded: LoadedRecordings, findings: Sequence[Finding]
 ) -> tuple[str, ...]:
-    """Return candidate effects without delays of the groups of corrected recordings.
+    """Return candidate effects without delays of groups of corrected recordings alone.
 
-    What the correction leaves of a delay, less than its uncertainty, is no second cause.
+    What the correction leaves of a delay, less than its uncertainty, is no second cause. Recordings
+    are corrected to the clock of the others, so that those of a group that needed no correction
+    determine a delay of the whole group as before.
 
     Args:
         names: Names of candidate effects.
-        loaded: The recordings.
+        loaded: The recordings; a delay of a group is fitted to the fitted ones.
         findings: Findings "command_clock" about them.
     """
     runs = {finding.run for finding in findings}
@@ -129,6 +133,9 @@ def candidates_besides_clocks(
     for recording in (*loaded.fitted, *loaded.held_out):
         if recording.origin in runs:
             groups.update(recording.notes.groups)
+    for recording in loaded.fitted:
+        if recording.origin not in runs:
+            groups.difference_update(recording.notes.groups)
     kept = []
     for name in names:
         if group_of(name) not in groups or without_group(name) not in CLOCK_EFFECTS:
@@ -155,15 +162,15 @@ def _suspects(delays: Delays, count: int, estimator: DelayEstimator) -> dict[str
     return found
 
 
-def _finding(
-    name: str, found: ClockDifference, mapped: MappedRecording, config: ChecksConfig
-) -> Finding:
+def _finding(name: str, found: ClockDifference, parts: Parts, config: ChecksConfig) -> Finding:
     """The finding about one file."""
     seconds = found.seconds
     sense, adverb = "later", "late"
     if seconds < 0.0:
         sense, adverb = "earlier", "early"
-    commands = _moving_commands(mapped)
+    names = list(parts[0].program.vessel.commands)
+    commands = [names[column] for column in moving_commands(parts)]
+    signals = dict.fromkeys(chain.from_iterable(mapped.signals for mapped in parts))
     evidence = (
         f"the motion follows the commands {abs(seconds):.3f} +- {found.sd:.3f} s {sense} than in "
         f"the other {found.others} recordings, which agree with each other. Another lag of the "
@@ -174,17 +181,8 @@ def _finding(
         evidence,
         probability=config.probability_evident,
         changes=delay_corrections(commands, -seconds),
-        alternatives=((f"the sensors are {adverb}", delay_corrections(mapped.signals, seconds)),),
+        alternatives=((f"the sensors are {adverb}", delay_corrections(signals, seconds)),),
         words="the clock of the commands differs from that of the other recordings",
         run=name,
         of_run_only=True,
     )
-
-
-def _moving_commands(mapped: MappedRecording) -> list[str]:
-    """Names of the commands that change."""
-    found = []
-    for column, name in enumerate(mapped.program.vessel.commands):
-        if np.ptp(mapped.command_values[:, column]) > 0.0:
-            found.append(name)
-    return found

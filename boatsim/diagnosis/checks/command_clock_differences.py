@@ -1,7 +1,7 @@
 """Differences between the delays of files behind their commands, and what else may explain them.
 
-The vessel model is fitted once more without the files in question, so that a delay of their clocks
-does not act on the model with which it is estimated.
+The vessel model is fitted once more after the files in question are corrected by first estimates,
+so that hardly any delay of their clocks acts on the model with which it is estimated.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,6 +14,7 @@ from boatsim.diagnosis.checks.command_delays import (
     DelayEstimator,
     Parts,
     Response,
+    moving_commands,
     with_response,
 )
 from boatsim.diagnosis.checks.drive_delays import best_drive_rival, common_lag
@@ -52,12 +53,16 @@ class ClockDifference:
 def delays_of_files(estimator: DelayEstimator, files: Mapping[str, Parts]) -> dict[str, Delay]:
     """Return the delays of the files that have a likeliest one.
 
+    A file in which no command changes has none.
+
     Args:
         estimator: Estimates the delays, with one vessel model for all files.
         files: Mapped recordings of each file.
     """
     found = {}
     for name, parts in files.items():
+        if not moving_commands(parts):
+            continue
         delay = estimator.delay(parts)
         if delay is not None:
             found[name] = delay
@@ -65,14 +70,21 @@ def delays_of_files(estimator: DelayEstimator, files: Mapping[str, Parts]) -> di
 
 
 def clock_differences(
-    estimator: DelayEstimator, files: Mapping[str, Parts], suspects: Mapping[str, float]
+    estimator: DelayEstimator,
+    files: Mapping[str, Parts],
+    suspects: Mapping[str, float],
+    names: Sequence[str],
 ) -> dict[str, ClockDifference]:
-    """Return differences of files, once the vessel is fitted without them; none if one is refuted.
+    """Return differences of files that are refined with another fit; none if one is refuted.
+
+    The vessel is fitted to all recordings of the problem, after the files that may differ are
+    corrected by first estimates.
 
     Args:
         estimator: Estimates the delays, with a vessel model that is fitted to all files.
         files: Mapped recordings of each file.
         suspects: Files that may differ, and their distance from the mean of the others [s].
+        names: File of each recording of the estimator's problem.
 
     Returns:
         The difference of each of these files; empty unless all of them differ.
@@ -81,7 +93,7 @@ def clock_differences(
     for name, parts in files.items():
         later = Response(suspects.get(name, 0.0))
         corrected[name] = [with_response(one, later) for one in parts]
-    refitted = _refitted(estimator, files, corrected)
+    refitted = _refitted(estimator, suspects, names)
     without_lag = delays_of_files(refitted, corrected)
     if not suspects.keys() <= without_lag.keys():
         return {}
@@ -100,26 +112,27 @@ def clock_differences(
         difference = _difference(delays[name], list(others.values()), moved, estimator)
         if not difference.exceeds(estimator.config, estimator.time_scale):
             return {}
-        if not _heading_agrees(name, others, by_heading, difference, estimator):
-            return {}
+        if _has_two_kinds(files[name]):
+            own = by_heading.get(name)
+            members = [by_heading[other] for other in others if other in by_heading]
+            if not _heading_agrees(own, members, difference, estimator):
+                return {}
         usual = Response(_mean(list(others.values())), lag)
         rival = best_drive_rival(refitted, files[name], usual)
         lead = delays[name].log_likelihood - rival
-        if lead < estimator.config.command_clock_lead:
-            return {}
+        if not estimator.config.command_clock_lead <= lead < np.inf:
+            return {}  # it is nan or infinite where the filter diverges
         found[name] = replace(difference, lead=lead)
     return found
 
 
 def _refitted(
-    estimator: DelayEstimator, files: Mapping[str, Parts], corrected: Mapping[str, Parts]
+    estimator: DelayEstimator, suspects: Mapping[str, float], names: Sequence[str]
 ) -> DelayEstimator:
-    """The estimator whose vessel model is fitted to the corrected recordings."""
-    moved = dict[int, MappedRecording]()
-    for name, parts in files.items():
-        for one, after in zip(parts, corrected[name], strict=True):
-            moved[id(one)] = after
-    fitted = [moved[id(one)] for one in estimator.problem.recordings]
+    """The estimator whose vessel model is fitted with the files that may differ corrected."""
+    fitted = []
+    for mapped, name in zip(estimator.problem.recordings, names, strict=True):
+        fitted.append(with_response(mapped, Response(suspects.get(name, 0.0))))
     problem = estimator.problem.with_recordings(fitted)
     return DelayEstimator(problem, fit_baseline(problem).recalibrated)
 
@@ -159,23 +172,23 @@ def _with_heading_alone(files: Mapping[str, Parts]) -> dict[str, list[MappedReco
 
 
 def _heading_agrees(
-    name: str, others: Delays, by_heading: Delays, found: ClockDifference, estimator: DelayEstimator
+    own: Delay | None, others: Sequence[Delay], found: ClockDifference, estimator: DelayEstimator
 ) -> bool:
-    """Whether the heading alone shows the difference of a file, so that all sensors have it.
+    """Whether delays by the heading alone show the difference of a file, so that all sensors do.
 
     Late positions alone are no fault of the clock of the commands.
     """
-    members = [by_heading[other] for other in others if other in by_heading]
-    if not _has_two_kinds(estimator.problem.recordings[0]):
-        return True
-    if name not in by_heading or not members:
+    if own is None or not others:
         return False
     moved = 0.0  # the files are corrected already
-    left = _difference(by_heading[name], members, moved, estimator)
+    left = _difference(own, others, moved, estimator)
     least = estimator.config.command_clock_agreement * float(np.hypot(left.sd, found.sd))
     return abs(left.seconds) < least and least < abs(found.seconds)
 
 
-def _has_two_kinds(mapped: MappedRecording) -> bool:
-    """Whether a recording has the heading and other measurements of the motion."""
-    return 0 < int(np.isin(mapped.signals, HEADING).sum()) < len(mapped.signals)
+def _has_two_kinds(parts: Parts) -> bool:
+    """Whether a file has the heading and other measurements of the motion."""
+    of_heading = set[bool]()
+    for mapped in parts:
+        of_heading.update(np.isin(mapped.signals, HEADING).tolist())
+    return len(of_heading) == 2

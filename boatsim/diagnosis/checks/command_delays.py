@@ -195,6 +195,18 @@ class DelayEstimator:
         return float(np.sqrt(max(variance, curvature))) / curvature
 
 
+def moving_commands(parts: Parts) -> list[int]:
+    """Return the numbers of the commands that change in at least one part of a file.
+
+    Args:
+        parts: The mapped parts of the file.
+    """
+    moving = set[int]()
+    for mapped in parts:
+        moving.update(np.flatnonzero(np.ptp(mapped.command_values, axis=0) > 0.0).tolist())
+    return sorted(moving)
+
+
 def with_response(mapped: MappedRecording, response: Response) -> MappedRecording:
     """Return a recording whose commands act later, and through first-order lags.
 

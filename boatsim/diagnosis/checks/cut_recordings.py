@@ -9,7 +9,33 @@ from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.recordings.table import FEWEST_ROWS, Recording
 
 Interval = tuple[float, float]  # first and last time [s]
+NAME_DIGITS, TEXT_DIGITS = 3, 4  # least significant digits of times in names and in findings
+MOST_DIGITS = 17  # that tell any two numbers of double precision apart
 SPAN = re.compile(r" \(\S+ to \S+ s\)$")  # at the end of the name of a piece
+
+
+def format_interval(begin: float, end: float, digits: int) -> str:
+    """Return the text of two times, such as "40 to 60 s", without powers of ten.
+
+    Args:
+        begin: First time [s].
+        end: Last time [s].
+        digits: Least number of significant digits; there are more where both times look alike.
+    """
+    first, last = "", ""
+    for more in range(digits, MOST_DIGITS + 1):
+        first, last = _format_time(begin, more), _format_time(end, more)
+        if first != last:
+            break
+    return f"{first} to {last} s"
+
+
+def _format_time(seconds: float, digits: int) -> str:
+    """A time with a number of significant digits, but at least to whole seconds."""
+    text = f"{seconds:.{digits}g}"
+    if "e" in text:
+        return f"{seconds:.0f}"
+    return text
 
 
 def parts_outside_intervals(recording: Recording, intervals: Sequence[Interval]) -> list[Recording]:
@@ -33,7 +59,8 @@ def parts_outside_intervals(recording: Recording, intervals: Sequence[Interval])
         if int(inside.sum()) >= FEWEST_ROWS:
             t = recording.t[inside]
             piece = recording.between(float(t[0]), float(t[-1]))
-            pieces.append(replace(piece, name=f"{whole} ({t[0]:.3g} to {t[-1]:.3g} s)"))
+            span = format_interval(float(t[0]), float(t[-1]), NAME_DIGITS)
+            pieces.append(replace(piece, name=f"{whole} ({span})"))
     return pieces
 
 

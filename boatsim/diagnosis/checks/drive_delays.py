@@ -4,11 +4,17 @@ Another lag of all drives, or another delay or lag of a single drive, may delay 
 recording as well. Their log likelihoods are compared with that of another clock.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from boatsim.diagnosis.checks.command_delays import Delay, DelayEstimator, Parts, Response
+from boatsim.diagnosis.checks.command_delays import (
+    Delay,
+    DelayEstimator,
+    Parts,
+    Response,
+    moving_commands,
+)
 
 
 def common_lag(
@@ -32,7 +38,7 @@ def common_lag(
     lags = [factor * estimator.time_scale for factor in estimator.config.command_clock_lags]
     totals = list[float]()
     for lag in lags:
-        totals.append(total(lag))
+        totals.append(_if_finite(total(lag)))
         if totals[-1] < max(totals):
             break
     best = int(np.argmax(totals))
@@ -53,36 +59,55 @@ def best_drive_rival(estimator: DelayEstimator, parts: Parts, usual: Response) -
         parts: The mapped parts of the file.
         usual: How the commands of the other files act.
     """
-    longest = usual.lag + estimator.longest
-
-    def with_lag(lag: float) -> float:
-        return estimator.log_likelihood(parts, usual._replace(lag=lag))
-
-    found = [estimator.maximum(with_lag, 0.0, longest)[1]]
-    values = parts[0].command_values
-    for column in np.flatnonzero(np.ptp(values, axis=0) > 0.0).tolist():
+    longest_lag = usual.lag + estimator.longest
+    found = [_best_time(estimator, parts, lambda lag: usual._replace(lag=lag), 0.0, longest_lag)]
+    for column in moving_commands(parts):
         one = usual._replace(only=column, only_lag=usual.lag)
         found.append(_best_delay_of_one(estimator, parts, one))
-        found.append(_best_lag_of_one(estimator, parts, one, longest))
+        found.append(_best_lag_of_one(estimator, parts, one, longest_lag))
     return max(found)
 
 
 def _best_delay_of_one(estimator: DelayEstimator, parts: Parts, one: Response) -> float:
     """Largest log likelihood [nats] of a file by the delay of one command."""
-
-    def value(seconds: float) -> float:
-        return estimator.log_likelihood(parts, one._replace(only_delay=seconds))
-
-    steps = round(estimator.longest / estimator.stride)
-    delays = estimator.stride * np.arange(-steps, steps + 1)
-    near = float(delays[int(np.argmax([value(d) for d in delays.tolist()]))])
-    return estimator.maximum(value, near - estimator.stride, near + estimator.stride)[1]
+    longest = estimator.longest
+    return _best_time(
+        estimator, parts, lambda delay: one._replace(only_delay=delay), -longest, longest
+    )
 
 
 def _best_lag_of_one(
     estimator: DelayEstimator, parts: Parts, one: Response, longest: float
 ) -> float:
     """Largest log likelihood [nats] of a file by the lag of one command."""
-    return estimator.maximum(
-        lambda lag: estimator.log_likelihood(parts, one._replace(only_lag=lag)), 0.0, longest
-    )[1]
+    return _best_time(estimator, parts, lambda lag: one._replace(only_lag=lag), 0.0, longest)
+
+
+def _best_time(
+    estimator: DelayEstimator,
+    parts: Parts,
+    response_of: Callable[[float], Response],
+    low: float,
+    high: float,
+) -> float:
+    """Largest log likelihood [nats] of a file by a time [s] of the response of its commands.
+
+    Times of a grid are compared first, because there may be several maxima.
+    """
+
+    def value(seconds: float) -> float:
+        return estimator.log_likelihood(parts, response_of(seconds))
+
+    times = np.linspace(low, high, max(1, round((high - low) / estimator.stride)) + 1)
+    values = [_if_finite(value(seconds)) for seconds in times.tolist()]
+    best = int(np.argmax(values))
+    before, after = times[max(best - 1, 0)], times[min(best + 1, len(times) - 1)]
+    refined = estimator.maximum(value, float(before), float(after))[1]
+    return max(values[best], _if_finite(refined))
+
+
+def _if_finite(log_likelihood: float) -> float:
+    """A log likelihood [nats]; -inf where the filter diverges."""
+    if np.isfinite(log_likelihood):
+        return log_likelihood
+    return -np.inf

@@ -12,7 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.cut_recordings import Interval, parts_outside_intervals
+from boatsim.diagnosis.checks.cut_recordings import (
+    TEXT_DIGITS,
+    Interval,
+    format_interval,
+    parts_outside_intervals,
+)
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
@@ -198,7 +203,7 @@ def _spans(t: Array, rows: Rows, least: float) -> list[tuple[float, float]]:
 
 def _finding(spans: list[tuple[float, float]], name: str, config: ChecksConfig) -> Finding:
     """The finding about one recording."""
-    texts = ", ".join(f"{begin:.4g} to {end:.4g} s" for begin, end in spans)
+    texts = ", ".join(format_interval(begin, end, TEXT_DIGITS) for begin, end in spans)
     return Finding(
         "commands_ignored",
         f"from {texts} the boat moves, but its motion shows none of the commanded forces, which it "

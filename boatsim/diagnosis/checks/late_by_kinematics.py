@@ -35,13 +35,15 @@ class _Sensor:
         delay: Delay behind the heading [s].
         variance: Its variance [s^2].
         least: Smallest delay that is reported [s].
-        unexplained: Share of the mean square difference that the delays leave.
+        reference: Name of the sensor with which it was compared; the heading has itself.
+        unexplained: Share of their mean square difference that the delays leave.
     """
 
     name: str
     delay: float
     variance: float
     least: float
+    reference: str
     unexplained: float
 
     def differs(self, other: "_Sensor", config: ChecksConfig) -> bool:
@@ -67,6 +69,8 @@ def late_sensor_findings(
     scale = froude_time_scale(vessel)
     window, longest = config.rates_window * scale, config.rates_max_delay * scale
     delays = sensor_delays(recording, window, longest, config)
+    if not delays:
+        return []
     least = _least_delays(recording, scale, config)
     sensors = _sensors(delays, least, config)
     late = _fewest_late(sensors, config)
@@ -105,19 +109,21 @@ def _sensors(
 ) -> list[_Sensor]:
     """The sensors with their delays behind the heading, as far as these explain a difference."""
     known = {(one.sensor, one.behind): one for one in delays}
-    heading = _Sensor(HEADING, 0.0, 0.0, least.get(HEADING, 0.0), 0.0)
+    heading = _Sensor(HEADING, 0.0, 0.0, least.get(HEADING, 0.0), HEADING, 0.0)
     found = [heading]
     for (sensor, behind), one in known.items():
         if sensor == HEADING and _explains(delays, behind, least, config):
             own = least[behind]
-            found.append(_Sensor(behind, -one.seconds, one.sd**2, own, one.unexplained))
+            found.append(_Sensor(behind, -one.seconds, one.sd**2, own, HEADING, one.unexplained))
     for reference in list(found):
         position = known.get((POSITIONS, reference.name))
         if position is not None:
             variance = reference.variance + position.sd**2
             delay = reference.delay + position.seconds
             own = least[POSITIONS]
-            found.append(_Sensor(POSITIONS, delay, variance, own, position.unexplained))
+            found.append(
+                _Sensor(POSITIONS, delay, variance, own, reference.name, position.unexplained)
+            )
     return found
 
 
@@ -171,7 +177,7 @@ def _finding(late: Sequence[_Sensor], others: Sequence[_Sensor], config: ChecksC
         verb = "are"
     if seconds < 0.0:
         sense = "ahead of"
-    removed = 100.0 * (1.0 - max(one.unexplained for one in (*late, *others)))
+    removed = 100.0 * (1.0 - _unexplained(late, others))
     return Finding(
         "velocity_late",
         f"{', '.join(columns)} {verb} {abs(seconds):.3f} +- {sd:.3f} s {sense} "
@@ -179,6 +185,19 @@ def _finding(late: Sequence[_Sensor], others: Sequence[_Sensor], config: ChecksC
         probability=config.probability_likely,
         changes=delay_corrections(columns, seconds),
     )
+
+
+def _unexplained(late: Sequence[_Sensor], others: Sequence[_Sensor]) -> float:
+    """Largest share that the delays leave of a difference between a late sensor and another one.
+
+    Sensors that were compared with each other and have the same delay differ by noise alone.
+    """
+    names = {one.name for one in late}
+    shares = []
+    for one in (*late, *others):
+        if (one.name in names) != (one.reference in names):
+            shares.append(one.unexplained)
+    return max(shares)
 
 
 def _mean(sensors: Sequence[_Sensor]) -> tuple[float, float]:

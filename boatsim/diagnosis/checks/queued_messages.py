@@ -33,6 +33,8 @@ def drop_queued_messages(recording: Recording) -> Recording:
             if np.isfinite(signals[name][late]).any():
                 signals[name] = np.where(late, np.nan, signals[name])
                 dropped.append(name)
+        if not dropped:
+            continue
         remarks.append(
             f"{recording.origin}: {', '.join(dropped)} from t = {queue.begin:g} s to "
             f"{queue.end:g} s {QUEUED} since {queue.last:g} s: {queue.evidence}; they are not used"

@@ -10,7 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.checks.cut_recordings import Interval, cut_intervals
+from boatsim.diagnosis.checks.cut_recordings import (
+    TEXT_DIGITS,
+    Interval,
+    cut_intervals,
+    format_interval,
+)
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import DiagnosisConfig
 from boatsim.diagnosis.loading import LoadedRecordings
@@ -101,7 +106,7 @@ def _is_still(t: Array, y: Array, seconds: float, limit: float, least: float) ->
 
 def rest_finding(recording: Recording, intervals: Sequence[Interval]) -> Finding:
     """Return the finding that states when a recording is at rest."""
-    spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in intervals)
+    spans = ", ".join(format_interval(a, b, TEXT_DIGITS) for a, b in intervals)
     return Finding(
         "at_rest",
         f"nothing moves from {spans}; friction can have any size below its limit there, and the "

@@ -9,7 +9,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.checks.cut_recordings import Interval, cut_intervals
+from boatsim.diagnosis.checks.cut_recordings import (
+    TEXT_DIGITS,
+    Interval,
+    cut_intervals,
+    format_interval,
+)
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.holes import rows_before_holes
 from boatsim.diagnosis.config import DiagnosisConfig
@@ -58,7 +63,7 @@ def unmeasured_times(
 
 def _finding(recording: Recording, intervals: Sequence[Interval]) -> Finding:
     """The finding that states when nothing is measured in a recording."""
-    spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in intervals)
+    spans = ", ".join(format_interval(a, b, TEXT_DIGITS) for a, b in intervals)
     return Finding(
         "unmeasured",
         f"no pose or rate is measured from {spans}; the parts before and behind are fitted like "

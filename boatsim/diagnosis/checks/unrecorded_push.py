@@ -11,7 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.cut_recordings import parts_outside_intervals
+from boatsim.diagnosis.checks.cut_recordings import (
+    TEXT_DIGITS,
+    format_interval,
+    parts_outside_intervals,
+)
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, dof_in_state_order
@@ -127,9 +131,8 @@ def push_finding(recording: Recording, pushes: Sequence[Push]) -> Finding:
     texts = []
     for push in pushes:
         unit = FORCE_UNITS[push.axis]
-        texts.append(
-            f"{push.begin:.4g} to {push.end:.4g} s ({push.force:.2g} {unit} in {push.axis})"
-        )
+        span = format_interval(push.begin, push.end, TEXT_DIGITS)
+        texts.append(f"{span} ({push.force:.2g} {unit} in {push.axis})")
     return Finding(
         "unrecorded_push",
         "a force that no channel records acts from " + ", ".join(texts) + "; the diagnosis leaves "

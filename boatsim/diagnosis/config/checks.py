@@ -352,8 +352,8 @@ class ChecksConfig:
     command_clock_suspect_sds: float = setting(
         2.0,
         "sd",
-        "Deviation of a file from the others from which its clock is examined: before the vessel "
-        "is fitted without it, its uncertainty is overestimated.",
+        "Deviation of a file from the others from which its clock is examined: before the file "
+        "is corrected and the vessel fitted again, its uncertainty is overestimated.",
     )
     command_clock_agreement: float = setting(
         3.0,

@@ -190,15 +190,28 @@ def test_a_diagnosis_corrects_the_clock_and_names_the_drives_of_all() -> None:
     assert abs(value - 0.04) < max(4.0 * sd, 0.002)
 
 
-def test_no_delay_is_tested_for_the_group_of_a_corrected_recording() -> None:
+@pytest.mark.parametrize(
+    ("corrected", "determined"),
+    [
+        (("flight_0",), ("b",)),  # group a has no other recording
+        (("flight_1",), ("a", "b")),  # the other recording of b shows a delay of both
+        (("flight_1", "flight_2"), ("a",)),  # none of b does, for the held-out one is not fitted
+    ],
+)
+def test_no_delay_is_tested_for_a_group_of_corrected_recordings_alone(
+    corrected: tuple[str, ...], determined: tuple[str, ...]
+) -> None:
+    """Recordings are corrected to the clock of the others, which a delay of a group may have."""
     logs = []
-    for log, group in zip(flights(3), ("a", "b", "b"), strict=True):
+    for log, group in zip(flights(4), ("a", "b", "b", "b"), strict=True):
         logs.append(replace(log, notes=replace(log.notes, groups=(group,))))
-    loaded = LoadedRecordings(logs, [], {None: CRAFT}, "")
-    finding = Finding("command_clock", "", run="flight_0")
-    names = ("command_delay", "clock_offset@a", "clock_offset@b", "thrust_lag@a")
-    kept = candidates_besides_clocks(names, loaded, [finding])
-    assert kept == ("command_delay", "clock_offset@b", "thrust_lag@a")
+    loaded = LoadedRecordings(logs[:3], logs[3:], {None: CRAFT}, "")
+    findings = [Finding("command_clock", "", run=run) for run in corrected]
+    names = ("command_delay", "clock_offset@a", "clock_offset@b", "thrust_lag@a", "thrust_lag@b")
+    expected = {"command_delay", "thrust_lag@a", "thrust_lag@b"}
+    expected |= {f"clock_offset@{group}" for group in determined}
+    kept = candidates_besides_clocks(names, loaded, findings)
+    assert set(kept) == expected
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from boatsim.diagnosis.checks.late_by_kinematics import late_sensor_findings
 from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics.base import Array
@@ -156,3 +157,22 @@ def test_a_few_samples_are_not_compared() -> None:
     few = np.arange(len(log)) % 40 == 1  # 23 of 900 rows
     log = changed(log, r_radps=np.where(few, -log["r_radps"], np.nan))
     assert check_recorded_rates(log, BOAT, DEFAULT.checks) == []
+
+
+@pytest.mark.parametrize(
+    "late",
+    [{"r_radps": 0.6}, {"x_m": 0.6, "y_m": 0.6}, {"x_m": 0.4, "y_m": 0.4, "psi_rad": 0.8}],
+)
+def test_the_share_that_a_delay_explains_concerns_late_sensors_alone(
+    late: dict[str, float],
+) -> None:
+    """Sensors that are on time differ from each other by noise, of which no delay explains any."""
+    for found in check_recorded_rates(log_with_delays(late, {}), BOAT, DEFAULT.checks):
+        share = float(found.evidence.split("explains ")[1].split(" %")[0])
+        assert share > 70.0
+
+
+def test_a_recording_of_one_row_has_no_delays(recwarn: pytest.WarningsRecorder) -> None:
+    log = log_with_delays({}, {}).between(0.0, 0.0)
+    assert late_sensor_findings(log, BOAT, DEFAULT.checks) == []
+    assert not recwarn.list

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from boatsim.diagnosis.checks.cut_recordings import format_interval, parts_outside_intervals
 from boatsim.diagnosis.checks.unmeasured_times import cut_unmeasured_times, unmeasured_times
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings
@@ -59,3 +60,34 @@ def test_a_larger_vessel_may_be_unmeasured_for_longer() -> None:
     """Times scale with the square root of the length: 160 m to 1.2 m as 11.5 to 1."""
     ship = load_vessel("mariner")
     assert not unmeasured_times(log(40.0, 60.0), ship, DEFAULT)
+
+
+@pytest.mark.parametrize(
+    ("begin", "end", "text"),
+    [
+        (40.000001, 59.999999, "40 to 60 s"),
+        (12345.0, 12361.0, "12345 to 12361 s"),
+        (12345.2, 12345.4, "12345.2 to 12345.4 s"),
+        (0.000001, 9999.9, "0 to 10000 s"),
+    ],
+)
+def test_times_are_written_without_powers_of_ten_and_differ(
+    begin: float, end: float, text: str
+) -> None:
+    assert format_interval(begin, end, 4) == text
+
+
+def test_parts_of_a_long_log_have_different_names_and_the_finding_their_times(boat: Vessel) -> None:
+    run = log(40.0, 60.0)
+    run = replace(run, t=run.t + 12300.0)
+    found = cut_unmeasured_times(loaded(run, boat), DEFAULT)
+    names = [part.name for part in found.fitted]
+    assert names == ["log (12300 to 12340 s)", "log (12360 to 12400 s)"]
+    assert "12340 to 12360 s" in found.findings[0].evidence
+    short = replace(run, t=12300.0 + 0.001 * np.arange(len(run.t)))
+    parts = parts_outside_intervals(short, [(12300.2005, 12300.2015), (12300.4005, 12300.4015)])
+    assert [part.name for part in parts] == [
+        "log (12300 to 12300.2 s)",
+        "log (12300.2 to 12300.4 s)",
+        "log (12300 to 12301 s)",
+    ]

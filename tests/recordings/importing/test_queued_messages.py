@@ -109,6 +109,23 @@ def test_recordings_without_positions_or_fixes_are_left_alone() -> None:
     assert drop_queued_messages(nowhere) is nowhere
 
 
+def test_coordinates_that_arrive_all_along_had_not_queued_and_are_not_remarked_on() -> None:
+    """Rows with one coordinate each are no fixes, so that there seems to be a gap of these."""
+    run = log()
+    t = np.sort(np.concatenate([run.t, np.arange(STALL + 0.5, STALL + GAP - 0.4, 0.25)]))
+    added = ~np.isin(t, run.t)
+    signals = {}
+    for column, (name, values) in enumerate(run.signals.items()):
+        signals[name] = np.interp(t, run.t, values)
+        signals[name][added & (np.arange(len(t)) % 2 == column % 2)] = np.nan
+    alternating = Recording("run", t, {name: signals[name] for name in ("x_m", "y_m")})
+    assert len(list(queued_positions(t, alternating["x_m"], alternating["y_m"]))) == 1
+    found = drop_queued_messages(alternating)
+    assert found.remarks == ()
+    for name in ("x_m", "y_m"):
+        assert np.array_equal(found[name], alternating[name], equal_nan=True)
+
+
 def test_a_sensor_with_a_link_of_its_own_is_not_late() -> None:
     t, queue = np.arange(0.0, 100.0, 0.5), Queue(STALL, STALL + GAP, EMPTY)
     late = (t > STALL) & (t < EMPTY)
