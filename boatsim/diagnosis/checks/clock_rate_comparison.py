@@ -64,8 +64,15 @@ class RateComparison:
         return float(self.weight.sum() ** 2 / (self.weight**2).sum())
 
     def velocity_gain(self) -> tuple[float, float]:
-        """Gain of the velocities for which both rates agree on average, and its sd."""
-        return self._mean_and_sd(self.track / self.turning)
+        """Gain of the velocities for which both rates agree on average, and its sd.
+
+        It is the ratio of the mean rates, because the mean of their ratios grows with the noise of
+        the heading.
+        """
+        turning = _mean(self.turning, self.weight)
+        gain = _mean(self.track, self.weight) / turning
+        _, sd = self._mean_and_sd(self.track - gain * self.turning)
+        return gain, sd / turning
 
     def mean_clock_rate(self) -> tuple[float, float]:
         """Mean clock rate by the heading, and its sd."""

@@ -7,7 +7,7 @@ reported if the others agree, if the heading alone shows it too, and if neither 
 one late command explain this recording as well.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
 
@@ -65,15 +65,38 @@ def check_command_clock(
         return []
     fitted = names[: len(problem.recordings)]
     estimator = DelayEstimator(problem, fit)
-    first = delays_of_files(estimator, files)
-    for count in range(1, int(config.command_clock_max_share * len(first)) + 1):
-        suspects = _suspects(first, count, estimator)
+    found = most_clock_differences(
+        delays_of_files(estimator, files),
+        estimator,
+        lambda suspects: clock_differences(estimator, files, suspects, fitted),
+    )
+    return [_finding(n, each, files[n], config) for n, each in found.items()]
+
+
+def most_clock_differences(
+    delays: Delays,
+    estimator: DelayEstimator,
+    differences: Callable[[Mapping[str, float]], dict[str, ClockDifference]],
+) -> dict[str, ClockDifference]:
+    """Return the differences of the largest set of files of which all differ from the others.
+
+    A file that differs little is hidden by one that differs much, so that further files are tried
+    together with those that were found.
+
+    Args:
+        delays: Delays of all files.
+        estimator: Estimator of these delays.
+        differences: Function that returns the differences of files that may differ, with their
+            distances [s] from the others; empty unless all of them differ.
+    """
+    found = dict[str, ClockDifference]()
+    most = int(estimator.config.command_clock_max_share * len(delays))
+    for count in range(1, most + 1):
+        suspects = _suspects(delays, count, estimator)
         if not suspects:
-            return []
-        found = clock_differences(estimator, files, suspects, fitted)
-        if found:
-            return [_finding(n, each, files[n], config) for n, each in found.items()]
-    return []
+            break
+        found = differences(suspects) or found
+    return found
 
 
 def find_command_clocks(problem: Problem, recordings: Sequence[Recording]) -> list[Finding]:

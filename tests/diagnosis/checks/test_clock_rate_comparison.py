@@ -33,3 +33,15 @@ def test_mean_rate_and_gain_have_the_standard_deviation_of_a_weighted_mean() -> 
     assert found.mean_clock_rate() == pytest.approx(expected)
     doubled = RateComparison(2.0 * found.turning, found.turning, found.weight, found.file)
     assert doubled.velocity_gain() == pytest.approx((2.0, 0.0))
+
+
+def test_noise_of_the_heading_does_not_bias_the_gain() -> None:
+    """The mean of the ratios would be 1 + 0.2^2, four standard deviations off."""
+    rng = np.random.default_rng(5)
+    count = 4000
+    turning = 1.0 + 0.2 * rng.uniform(-np.sqrt(3.0), np.sqrt(3.0), count)
+    track = 1.0 + 0.01 * rng.standard_normal(count)
+    found = RateComparison(track, turning, np.ones(count), np.zeros(count, int))
+    gain, sd = found.velocity_gain()
+    assert abs(gain - 1.0) < 3.0 * sd and sd < 0.01
+    assert np.mean(track / turning) - 1.0 > 6.0 * sd

@@ -3,15 +3,16 @@
 All commands of a file count, in whichever part they move, and all maxima of the log likelihood.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from boatsim.diagnosis.checks import command_clock_differences
-from boatsim.diagnosis.checks.command_clock import _finding
+from boatsim.diagnosis.checks.command_clock import _finding, most_clock_differences
 from boatsim.diagnosis.checks.command_clock_differences import (
     ClockDifference,
     _refitted,
@@ -230,3 +231,20 @@ def test_the_vessel_is_fitted_to_recordings_of_which_the_suspects_are_corrected(
     for before, after, moved in zip(recordings, fitted.problem, (0.0, MOVED, MOVED), strict=True):
         assert after.command_times == pytest.approx(before.command_times + moved)
         assert np.array_equal(after.command_values, before.command_values)
+
+
+def test_a_small_difference_beside_a_large_one_is_found() -> None:
+    delays = {f"run_{i}": Delay(0.002 * (-1) ** i, 0.005, 0.0) for i in range(12)}
+    delays["run_3"] = Delay(0.8, 0.005, 0.0)
+    delays["run_7"] = Delay(0.15, 0.005, 0.0)
+    tried = []
+
+    def differences(suspects: Mapping[str, float]) -> dict[str, ClockDifference]:
+        tried.append(set(suspects))
+        return {name: ClockDifference(off, 0.01, 12) for name, off in suspects.items()}
+
+    estimator = cast(DelayEstimator, SimpleNamespace(config=DEFAULT.checks, time_scale=1.0))
+    found = most_clock_differences(delays, estimator, differences)
+    assert tried == [{"run_3"}, {"run_3", "run_7"}]
+    assert found["run_7"].seconds == pytest.approx(0.15, abs=0.005)
+    assert found["run_3"].seconds == pytest.approx(0.8, abs=0.005)
