@@ -70,8 +70,9 @@ class FiniteDepth(CoefficientRelease):
     the waves near the critical speed sqrt(g h) are not included. Of the hulls `mmg_hull` and
     `abkowitz_hull` only Y_v, N_r and the resistance change: their coupling derivatives N_v and Y_r,
     the added mass m_y of the MMG model and the masses of the Abkowitz model keep their values, so
-    that the course stability of such a ship in shallow water is overestimated. A diagnosis tests it where the
-    fact `water_depth_m` states the depth; where only the increase is known, use `shallow_water`.
+    that the course stability of such a ship in shallow water is overestimated. A diagnosis tests
+    it where the fact `water_depth_m` states the depth; where only the increase is known, use
+    `shallow_water`.
     """
 
     formula: ClassVar[str] = (
