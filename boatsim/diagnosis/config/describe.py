@@ -26,15 +26,15 @@ class DescribeConfig:
         low=0,
     )
     budget: int = setting(
-        750_000_000,
+        500_000_000,
         "steps x dof",
         "Work of the description, counted as in `select.budget`; then no further term is sought. "
         "Recordings of a minute and a half need 2 to 10 million, half an hour of "
-        "zig-zags between 250 and 750 million.",
+        "zig-zags 250 million and more.",
         low=1,
     )
     total_budget: int = setting(
-        1_000_000_000,
+        750_000_000,
         "steps x dof",
         "Work of a whole diagnosis up to the end of the description, so that it ends within ten "
         "minutes of CPU: where the search used its budget, less is left to the description. Half "

@@ -31,16 +31,16 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        700_000_000,
+        500_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
         "freedom, and the covariances of the filter. Recordings of a minute and a half need 2 to "
-        "12 million. 700 million take 2 to 5 minutes; then the search ends and reports what it "
+        "12 million. 500 million take 2 to 4 minutes; then the search ends and reports what it "
         "has not tried.",
         low=1,
     )
     last_budget: int = setting(
-        350_000_000,
+        250_000_000,
         "steps x dof",
         "Work of the second search, in which candidates that are tried last take part. Half of "
         "`budget`, so that a diagnosis with both searches ends within ten minutes of CPU.",
