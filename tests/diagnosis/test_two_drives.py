@@ -124,6 +124,7 @@ def test_late_directions_of_both_drives_are_one_dead_time_and_no_lag(tmp_path: P
     named(answer, "steering_delay", {"delay_s": DEAD_TIME})
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_lag_of_both_directions_is_that_of_the_steering(tmp_path: Path) -> None:
     answer = diagnosed(runs(lagged, 2, 3), tmp_path, "trial_boat")

@@ -108,6 +108,7 @@ def carried_boat(t: float, y: Array, _: Array, stream: Callable[[float], Array] 
     return np.array([X, Y, 0.0])
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_with_the_current_recorded_nothing_is_missing_and_without_it_something_is(
     tmp_path: Path,

@@ -329,6 +329,7 @@ def trial_boat(folder: Path, known: bool) -> str:
     return str(boats.written(folder, "blown", text + "\n" + (KNOWN + areas if known else "")))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_with_the_wind_known_nothing_is_missing_and_without_it_something_is(tmp_path: Path) -> None:
     runs = [sailed(f"run_{seed}", seed) for seed in range(2)]
