@@ -61,7 +61,9 @@ def select_terms(
 ) -> Formula:
     """Build a formula for an unexplained force: add symbolic terms one by one, by evidence.
 
-    The selection ends when no term gains enough evidence, or when its budget of work is spent.
+    The selection ends when no term gains enough evidence, or when its budget of work is spent. If
+    it is spent from the start, the best term by approximate evidence is the only one, with the
+    constants of the grammar, and no effect is removed for it.
 
     Args:
         problem: The estimation problem.
@@ -78,6 +80,8 @@ def select_terms(
     left = max(config.describe.total_budget - problem.work_count.work, 0)
     budget = SearchBudget(problem.work_count, min(config.describe.budget, left))
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
+    if budget.is_spent:
+        return _first_term(formula, everywhere)
     while len(formula.terms) < config.describe.most_terms:
         if formula.terms and budget.is_spent:
             return replace(formula, complete=False)
@@ -109,6 +113,24 @@ def select_terms(
         done = count / config.describe.most_terms
         report(DESCRIBING, done, f"{count} terms ({gain:.0f} nats)")
     return formula
+
+
+def _first_term(formula: Formula, everywhere: Recordings) -> Formula:
+    """The formula with its best term by approximate evidence, if that gains enough evidence."""
+    problem = formula.problem
+    incomplete = replace(formula, complete=False)
+    ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
+    found = _extensions(formula, ordered[:1], set(), everywhere)
+    required = required_gain(len(ordered), problem.config.select)
+    if not found or found[0].fit.evidence - formula.fit.evidence < required:
+        return incomplete
+    (best,) = found
+    return replace(
+        incomplete,
+        problem=best.problem,
+        fit=best.fit,
+        terms={best.placeholder: best.scored.term},
+    )
 
 
 def _score_all(problem: Problem, recordings: Sequence[FittedRecording]) -> list[ScoredTerm]:
