@@ -58,25 +58,25 @@ def fit_to_free_runs(
     """
     config = errors.problem.config
     here = _evaluate(errors, start, fixed_effects)
-    damping, exact = 0.0, True
+    damping, are_fresh = 0.0, True
     for _ in range(config.simulate.steps):
         further, damping = _step(errors, here, damping)
         if further is None:
-            if exact:
+            if are_fresh:
                 break
-            here, exact = _with_derivatives(errors, here), True
+            here, are_fresh = _with_derivatives(errors, here), True
             continue
         gain = further.score - here.score
-        exact = gain < config.fit.broyden_share * _predicted_gain(here, further.model.theta)
+        are_fresh = gain < config.fit.broyden_share * _predicted_gain(here, further.model.theta)
         here = (
             _with_derivatives(errors, further)
-            if exact
+            if are_fresh
             else _with_updated_derivatives(here, further)
         )
         damping /= config.fit.damping_growth
         if gain < config.simulate.step_gain:
             break
-    if not exact:
+    if not are_fresh:
         here = _with_derivatives(errors, here)
     return _with_covariance(here)
 
@@ -97,12 +97,12 @@ def without_fit(
 def add_parameters(
     errors: OutputErrors, base: OutputErrorFit, start: Fit, steps: int
 ) -> OutputErrorFit:
-    """Fit a model with one more effect roughly: the derivatives by the old parameters are held.
+    """Fit a model with one or two more effects roughly, with held derivatives by old parameters.
 
     Args:
         errors: Errors of free runs over the fitted recordings.
-        base: Fit of the model without the effect.
-        start: The model with the effect, whose parameters come last.
+        base: Fit of the model without these effects.
+        start: The model with them; their parameters come last.
         steps: Number of Gauss-Newton steps.
 
     Returns:

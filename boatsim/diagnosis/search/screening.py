@@ -273,7 +273,10 @@ def transfer_coefficient_change(start: Fit, effect: Effect) -> Fit:
 
 
 def transfer_surplus(start: Fit, effect: Effect, values: Array) -> Fit:
-    """Transfer what a refit added to a coefficient to the parameter that it had to contain.
+    """Move the excess of a refitted coefficient to the parameter of an effect that it contained.
+
+    Where an effect is missing, the fit of a coefficient of the vessel contains it
+    (`Effect.contained_in`).
 
     Args:
         start: Fit to which the effect was added, not yet refitted.

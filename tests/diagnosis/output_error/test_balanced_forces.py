@@ -108,6 +108,7 @@ def selected(folder: Path, truth: float) -> tuple[Question, Ranking]:
     return question, ranking
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("truth", [1.0, 0.0])
 def test_a_spring_and_the_drift_that_it_balances_are_found_together_or_not_at_all(
     truth: float, tmp_path: Path

@@ -255,6 +255,7 @@ def test_drives_are_not_exchanged_where_the_heading_is_counterclockwise(tmp_path
     assert "turns to the other side" not in imported(table(tmp_path, cells))[1]
 
 
+@pytest.mark.slow
 def test_sensors_that_share_the_rows_of_a_table_have_rates_of_their_own(tmp_path):
     rows = {name: [] for name in ("time", "x_m", "y_m", "heading_deg")}
     for i in range(COUNT):
