@@ -197,7 +197,7 @@ def _unexplained(late: Sequence[_Sensor], others: Sequence[_Sensor]) -> float:
     for one in (*late, *others):
         if (one.name in names) != (one.reference in names):
             shares.append(one.unexplained)
-    return max(shares)
+    return max(shares, default=1.0)  # no pair shows what the delays explain
 
 
 def _mean(sensors: Sequence[_Sensor]) -> tuple[float, float]:
