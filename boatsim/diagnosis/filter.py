@@ -23,6 +23,7 @@ from boatsim.diagnosis.filter_arguments import (
 )
 from boatsim.diagnosis.recent_results import RecentResults
 from boatsim.diagnosis.work import (
+    CORRECTION,
     COVARIANCE,
     DERIVATIVES,
     SMOOTHER,
@@ -249,6 +250,10 @@ class MappedRecording:
         return RecentResults(min(KEPT_SMOOTHED, LARGEST_SMOOTHED // size))
 
     @cached_property
+    def _integrations_by_step(self) -> dict[float, float]:
+        return {}
+
+    @cached_property
     def _free_runs(self) -> RecentResults[list[tuple[int, Array]]]:
         return RecentResults(KEPT_FREE_RUNS)
 
@@ -332,8 +337,8 @@ class MappedRecording:
             integrations = integration_count(self.times, steps)
         else:
             integrations = about.integrations
-        matrices = COVARIANCE if about else COVARIANCE + DERIVATIVES
-        self._count_pass(integrations, matrices)
+        further = COVARIANCE if about else COVARIANCE + DERIVATIVES
+        self._count_pass(integrations, further)
         return FilterPass(
             found,
             _read_only(whitened.ravel()),
@@ -397,10 +402,10 @@ class MappedRecording:
             )
         return about.packed[own]
 
-    def _count_pass(self, integrations: float, matrices: float) -> None:
-        """Count the work of a pass with given integration steps and work on matrices."""
-        steps = integrations + self._changes_between_rows
-        self.filtered.add_pass(steps, len(self.times), self.program.module.NQ, matrices)
+    def _count_pass(self, integrations: float, further: float) -> None:
+        """Count the work of a pass that computes more than corrections in each row."""
+        steps, shape = integrations + self._changes_between_rows, self.measured.shape
+        self.filtered.add_pass(steps, shape, self.program.module.NQ, CORRECTION + further)
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).
@@ -491,10 +496,12 @@ class MappedRecording:
         if not len(begin.starts):
             return []
         nq = self.program.module.NQ
+        step = self.config.free_run_step if step is None else step
+        self.filtered.add_free_runs(self._integrations_of_free_runs(step), nq)
         out = np.full((len(begin.starts), len(self.times), 2 * nq), np.nan)
         self.program.estimation_functions.simulate_intervals(
             self.times_and_commands,
-            self.config.free_run_step if step is None else step,
+            step,
             VesselNumbers(rigid_body_values(values), values, on),
             begin.starts,
             begin.ends,
@@ -510,6 +517,13 @@ class MappedRecording:
                 since = self.times[first : first + len(channels)] - self.times[first]
                 channels[:, :nq] += offset * np.exp(-since / decay_time)[:, None]
         return runs
+
+    def _integrations_of_free_runs(self, step: float) -> float:
+        """Number of integration steps of free runs over the whole recording."""
+        known = self._integrations_by_step
+        if step not in known:
+            known[step] = integration_count(self.times, np.full(len(self.times), step))
+        return known[step]
 
     def free_run_starts(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0

@@ -25,6 +25,7 @@ from boatsim.diagnosis.answer.incomplete import (
     TERMS_NOT_SOUGHT,
     TIME_NOT_CHOSEN,
     failure_statement,
+    not_tried_statement,
 )
 from boatsim.diagnosis.answer.results import collect_findings
 from boatsim.diagnosis.answer.schema import Answer
@@ -65,7 +66,7 @@ from boatsim.diagnosis.recalibration import (
     predicts_worse,
 )
 from boatsim.diagnosis.recording_mapping import map_recording
-from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget
+from boatsim.diagnosis.search.budget import BudgetSpentError
 from boatsim.diagnosis.search.ranking import (
     Baseline,
     Ranking,
@@ -73,6 +74,7 @@ from boatsim.diagnosis.search.ranking import (
     select_and_rank_candidates,
 )
 from boatsim.diagnosis.search.screening import largest_gain_on_top
+from boatsim.diagnosis.stage_budgets import search_budget, simulation_budget
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
 from boatsim.diagnosis.symbolic.residual_description import (
     describe_residual_force as describe_residual,
@@ -248,13 +250,13 @@ def _fit_and_select(
     if ignored:
         findings = (*findings, *ignored)
         loaded = recordings_that_follow_commands(loaded, question.problem, ignored)
-        question = set_up_estimation_problem(loaded, question.problem.config)
+        question = _set_up_again(loaded, question)
         base = fit_baseline_models(question)
     other_clocks = find_other_clocks(loaded, question, base)
     if other_clocks:
         findings = (*findings, *other_clocks)
         loaded = recordings_with_one_clock(loaded, other_clocks)
-        question = set_up_estimation_problem(loaded, question.problem.config)
+        question = _set_up_again(loaded, question)
         names = candidates_besides_clocks(question.candidates, loaded, other_clocks)
         question = replace(question, candidates=names)
         base = fit_baseline_models(question)
@@ -352,6 +354,12 @@ def _is_finite(answer: Answer) -> bool:
     return True
 
 
+def _set_up_again(loaded: LoadedRecordings, question: Question) -> Question:
+    """The estimation problem of changed recordings or candidates; the count of work goes on."""
+    problem = question.problem
+    return set_up_estimation_problem(loaded, problem.config, problem.work_count)
+
+
 def check_recordings(loaded: LoadedRecordings, question: Question) -> tuple[Finding, ...]:
     """Return all findings of the quality checks of the recordings.
 
@@ -392,7 +400,7 @@ def cut_unrecorded_pushes(
     kept = recordings_without_pushes(loaded, question.problem, question.held_out, found)
     if kept is None:
         return loaded, question
-    return kept, set_up_estimation_problem(kept, question.problem.config)
+    return kept, _set_up_again(kept, question)
 
 
 def find_ignored_commands(
@@ -468,7 +476,7 @@ def select_candidates(
         The ranking with the selected effects, and the problem with the correlation time.
     """
     problem, candidates, held_out = question.problem, question.candidates, question.held_out
-    budget = SearchBudget(problem.work_count, work or problem.config.select.budget)
+    budget = search_budget(problem, work)
     ranking = select_and_rank_candidates(
         problem, candidates, held_out, report=report, base=base, budget=budget
     )
@@ -533,7 +541,8 @@ def try_last_candidates(
 
     Returns:
         The recordings with these candidates requested, the question with them and its decision, if
-        one of them was selected and the model gains `select.last_gain`; else the arguments.
+        one of them was selected and the model gains `select.last_gain`; else the arguments. Where
+        no work is left to select again, the decision states it.
     """
     ranking, config = decision.ranking, question.problem.config
     last = []
@@ -544,7 +553,7 @@ def try_last_candidates(
     if not last:
         return loaded, question, decision
     wider = replace(loaded, library=(*loaded.library, *last))
-    again = set_up_estimation_problem(wider, config)
+    again = _set_up_again(wider, question)
     report(f"trying {', '.join(last)}")
     compile_program(again.problem)
     base = fit_baseline_models(again)
@@ -554,6 +563,9 @@ def try_last_candidates(
         gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
     if gain < config.select.last_gain:
         return loaded, question, decision
+    if search_budget(again.problem, config.select.last_budget).is_spent:
+        ranking = _with_skipped(ranking, not_tried_statement(last))
+        return loaded, question, replace(decision, ranking=ranking)
     selection = select_candidates(again, base, wider, report, config.select.last_budget)
     other = decide_causes(again, add_forces_that_balance(again, selection, report))
     selected = any(name in other.ranking.best.effects for name in tested)
@@ -683,7 +695,7 @@ def improve_simulations(question: Question, decision: Decision, ranking: Ranking
         ranking: Selected and described effects, with the adopted coefficients.
     """
     problem = decision.problem
-    budget = SearchBudget(problem.work_count, problem.config.simulate.budget)
+    budget = simulation_budget(problem)
     found = fit_to_simulations(problem, ranking, question.candidates, question.held_out, budget)
     return _with_skipped(found, EFFECTS_NOT_ADDED) if budget.is_spent else found
 

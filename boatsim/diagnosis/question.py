@@ -67,7 +67,11 @@ class Question:
 
 
 def set_up_estimation_problem(
-    loaded: LoadedRecordings, config: DiagnosisConfig = DEFAULT, *, with_candidates: bool = True
+    loaded: LoadedRecordings,
+    config: DiagnosisConfig = DEFAULT,
+    done: WorkCount | None = None,
+    *,
+    with_candidates: bool = True,
 ) -> Question:
     """Set up the estimation problem of a diagnosis from recordings that have been read.
 
@@ -76,6 +80,8 @@ def set_up_estimation_problem(
     Args:
         loaded: Fitted and held-out recordings with their vessels.
         config: Settings of the diagnosis.
+        done: Count of the work of the diagnosis so far, to which that of the problem is added;
+            None: a new count.
         with_candidates: Whether the compiled program holds the candidates. Without them it has the
             same numbers for the vessel as specified, and compiles faster.
 
@@ -102,7 +108,7 @@ def set_up_estimation_problem(
         programs[path] = Program(known, candidates)
     levels = prior_noise_levels(vessel, loaded.fitted, config)
     noise = shared_noise(vessel, loaded.fitted, config)
-    mapper = RecordingMapper(programs, noise, levels, config)
+    mapper = RecordingMapper(programs, noise, levels, config, done or WorkCount())
     fitted = [mapper(recording) for recording in loaded.fitted]
     held_out = []
     for recording in loaded.held_out:

@@ -6,15 +6,17 @@ import numpy as np
 
 from boatsim.physics.base import Array
 
-# The constants define the unit of `select.budget` and `describe.budget` and are no settings.
-# Work per row and degree of freedom squared, relative to an integration step and degree of freedom:
-# matrices of the covariance, derivatives of the motion, and the smoother. Fitted to the CPU times
-# of passes over the recordings of a hovercraft, a ship and a ship section.
-COVARIANCE = 0.25
-DERIVATIVES = 0.5
-SMOOTHER = 1.0
-SCORING = 0.25  # work per row, degree of freedom and term of a description that is scored
-CALL = 500  # work of one pass that does not depend on the rows
+# The constants define the unit of all budgets of work and are no settings. They were fitted to the
+# CPU times of passes over the recordings of a boat, a ferry, a ship, a hovercraft and a ship
+# section; the unit is one integration step of one degree of freedom, about 0.1 microseconds.
+# Work per row, degree of freedom, and mean of the numbers of degrees of freedom and channels:
+CORRECTION = 1.0  # corrections of the state by the recorded signals, with known gains
+COVARIANCE = 0.8  # covariances of the filter, which give its gains
+DERIVATIVES = 1.3  # derivatives of the motion, for the covariances
+SMOOTHER = 4.0  # a pass backwards
+SIMULATED_STEP = 1.4  # work of a step of a free run and degree of freedom
+SCORING = 0.7  # work per row, degree of freedom and term of a description that is scored
+CALL = 2000  # work of one pass that does not depend on the rows
 MOST_PARTS = 1e4  # of the time between two rows, so that the count stays finite
 
 
@@ -36,16 +38,27 @@ class WorkCount:
 
     work: int = 0
 
-    def add_pass(self, integrations: float, rows: int, dof: int, matrices: float) -> None:
+    def add_pass(self, integrations: float, shape: tuple[int, int], dof: int, rows: float) -> None:
         """Count one pass of the filter over a recording.
 
         Args:
             integrations: Integration steps of the pass.
-            rows: Rows of the recording.
+            shape: Numbers of rows and of channels of the recording.
             dof: Degrees of freedom.
-            matrices: Work on matrices per row and degree of freedom squared, in integration steps.
+            rows: Sum of `CORRECTION` and, where the pass computes them, of `COVARIANCE`,
+                `DERIVATIVES` and `SMOOTHER`.
         """
-        self.work += CALL + round(dof * integrations + matrices * dof * dof * rows)
+        size = shape[0] * dof * 0.5 * (dof + shape[1])
+        self.work += CALL + round(dof * integrations + rows * size)
+
+    def add_free_runs(self, integrations: float, dof: int) -> None:
+        """Count the free runs over a recording.
+
+        Args:
+            integrations: Integration steps of the free runs.
+            dof: Degrees of freedom.
+        """
+        self.work += CALL + round(SIMULATED_STEP * dof * integrations)
 
     def add_scores(self, terms: int, rows: int, dof: int) -> None:
         """Count the approximate evidence of terms of a description, over one recording.

@@ -18,7 +18,7 @@ AFTER_COMPARISON = (TIME_NOT_CHOSEN, NOT_SELECTED_AGAIN, TERMS_NOT_SOUGHT, EFFEC
 
 INCOMPLETE = (
     "The search ended before it had compared all candidates, because its budget was spent; "
-    "shorter recordings, or a larger select.budget, complete it."
+    "shorter recordings, or larger budgets (select.budget, work.total), complete it."
 )
 FAILED = " failed and was skipped: "  # between a stage and the reason
 COMPARED = "All candidates were compared, but the computing budget did not suffice for more:"
@@ -32,6 +32,15 @@ def failure_statement(stage: str, error: Exception) -> str:
         error: The error that ended it.
     """
     return f"{stage}{FAILED}{str(error) or type(error).__name__}"
+
+
+def not_tried_statement(names: Sequence[str]) -> str:
+    """Return the statement that candidates which are tried last were not tried.
+
+    Args:
+        names: Names of the candidates.
+    """
+    return f"candidates that are tried last were not tried: {', '.join(names)}"
 
 
 def is_failure(statement: str) -> bool:

@@ -3,7 +3,8 @@
 A `DiagnosisConfig` holds frozen groups of settings, named after the stages of
 `boatsim.diagnosis.pipeline`: load, check (`checks`), fit, select, decide, describe, plan, adopt,
 simulate, validate and answer. The stage adopt has no group; it uses `fit.undetermined_sd` and
-`validate.harmful`. The groups `filter` and `locate` belong to methods that several stages use.
+`validate.harmful`. The groups `filter` and `locate` belong to methods that several stages use, and
+`work` to the whole diagnosis.
 
 Each setting has a default, a unit and the reason for its value. Users change settings by their
 dotted names, such as `select.odds`: with `boatsim diagnose --set`, or with the argument `settings`
@@ -31,6 +32,7 @@ from boatsim.diagnosis.config.plan import PlanConfig
 from boatsim.diagnosis.config.select import SelectConfig
 from boatsim.diagnosis.config.simulate import SimulateConfig
 from boatsim.diagnosis.config.validate import ValidateConfig
+from boatsim.diagnosis.config.work import WorkConfig
 
 __all__ = [
     "AnswerConfig",
@@ -49,6 +51,7 @@ __all__ = [
     "SelectConfig",
     "SimulateConfig",
     "ValidateConfig",
+    "WorkConfig",
     "from_settings",
     "settings_by_name",
 ]

@@ -26,19 +26,10 @@ class DescribeConfig:
         low=0,
     )
     budget: int = setting(
-        500_000_000,
+        650_000_000,
         "steps x dof",
         "Work of the description, counted as in `select.budget`; then no further term is sought. "
-        "Recordings of a minute and a half need 2 to 10 million, half an hour of "
-        "zig-zags 250 million and more.",
-        low=1,
-    )
-    total_budget: int = setting(
-        750_000_000,
-        "steps x dof",
-        "Work of a whole diagnosis up to the end of the description, so that it ends within ten "
-        "minutes of CPU: where the search used its budget, less is left to the description. Half "
-        "an hour of zig-zags needs 200 million before the description.",
+        "It takes 1 to 2 minutes, and gets less where `work.total` leaves less.",
         low=1,
     )
     fitted_terms: int = setting(

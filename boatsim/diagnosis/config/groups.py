@@ -19,6 +19,7 @@ from boatsim.diagnosis.config.select import SelectConfig
 from boatsim.diagnosis.config.setting import Number
 from boatsim.diagnosis.config.simulate import SimulateConfig
 from boatsim.diagnosis.config.validate import ValidateConfig
+from boatsim.diagnosis.config.work import WorkConfig
 from boatsim.errors import BadInput, unknown_name_message
 
 Plain: TypeAlias = Number | list[Number]  # a setting as JSON has it
@@ -29,7 +30,8 @@ Given: TypeAlias = str | Number | Sequence[Number]  # a setting as a user may gi
 class DiagnosisConfig:
     """All settings of a diagnosis (thresholds, priors, tolerances, limits), grouped by stage.
 
-    The groups `filter` and `locate` belong to methods that several stages use.
+    The groups `filter` and `locate` belong to methods that several stages use, and `work` to the
+    whole diagnosis.
     """
 
     load: LoadConfig = LoadConfig()
@@ -44,6 +46,7 @@ class DiagnosisConfig:
     answer: AnswerConfig = AnswerConfig()
     filter: FilterConfig = FilterConfig()
     locate: LocateConfig = LocateConfig()
+    work: WorkConfig = WorkConfig()
 
 
 DEFAULT = DiagnosisConfig()

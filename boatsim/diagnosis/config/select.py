@@ -31,19 +31,19 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        500_000_000,
+        1_300_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
-        "freedom, and the covariances of the filter. Recordings of a minute and a half need 2 to "
-        "12 million. 500 million take 2 to 4 minutes; then the search ends and reports what it "
-        "has not tried.",
+        "freedom, and what takes as long as these. Recordings of a minute and a half need 5 to "
+        "40 million. 1,300 million take 2 to 3 minutes; then the search ends and reports what it "
+        "has not tried. It gets less where `work.total` leaves less.",
         low=1,
     )
     last_budget: int = setting(
-        250_000_000,
+        650_000_000,
         "steps x dof",
         "Work of the second search, in which candidates that are tried last take part. Half of "
-        "`budget`, so that a diagnosis with both searches ends within ten minutes of CPU.",
+        "`budget`, because most candidates have been tried before.",
         low=1,
     )
     again_share: float = setting(
@@ -54,7 +54,7 @@ class SelectConfig:
         low=0.0,
     )
     thorough_work: int = setting(
-        60_000_000,
+        150_000_000,
         "steps x dof",
         "Work of the search, about 20 seconds, after which it saves work. Recordings of a minute "
         "and a half need less.",

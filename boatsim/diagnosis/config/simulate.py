@@ -20,15 +20,15 @@ class SimulateConfig:
         0.1, "nats", "A smaller gain ends a fit; parameters then move by a fraction of their sd."
     )
     budget: int = setting(
-        600_000_000,
+        1_300_000_000,
         "steps x dof",
         "Work of the fits to free runs, counted as in `select.budget`; then no further effect is "
-        "dropped or added. 600 million take two to four minutes, so that a diagnosis ends within "
-        "ten minutes of CPU.",
+        "dropped or added. 1,300 million take 2 to 3 minutes. They get less where `work.total` "
+        "leaves less.",
         low=1,
     )
     unsure_budget: int = setting(
-        300_000_000,
+        500_000_000,
         "steps x dof",
         "Work of the search without those stated effects that are only probably causes. It takes "
         "about a minute of CPU.",
@@ -63,10 +63,10 @@ class SimulateConfig:
     )
     followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
     pair_budget: int = setting(
-        220_000_000,
+        400_000_000,
         "steps x dof",
         "Work of the search for a spring to the ground together with the force that it balances; "
-        "then no further pair is tried. It takes about 30 seconds of CPU.",
+        "then no further pair is tried. It takes about a minute of CPU.",
         low=1,
     )
     pair_starts: tuple[float, ...] = setting(

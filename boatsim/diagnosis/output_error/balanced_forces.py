@@ -15,11 +15,11 @@ from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, remove_effect
 from boatsim.diagnosis.output_error.search import OutputErrorSearch, with_coefficients_of_file
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
 from boatsim.diagnosis.search.ranking import Ranking, with_further_effects
 from boatsim.diagnosis.search.screening import add_effect
+from boatsim.diagnosis.stage_budgets import pair_budget
 from boatsim.physics.base import Effect, Force
 from boatsim.physics.groups import group_of
 from boatsim.progress import Report, ignore_progress
@@ -59,8 +59,7 @@ def add_balanced_forces(
     if not springs or not held_out or room < 2 or not ranking.has_unexplained_force_or_cause:
         return ranking
     report("looking for forces that balance each other", 0.0)
-    budget = SearchBudget(problem.work_count, problem.config.simulate.pair_budget)
-    search = OutputErrorSearch(problem, best, held_out, budget=budget)
+    search = OutputErrorSearch(problem, best, held_out, budget=pair_budget(problem))
     search.start_from(with_coefficients_of_file(best))
     search.drop_effects()
     required = required_gain(len(candidates), problem.config.select)

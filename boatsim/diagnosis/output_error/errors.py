@@ -17,7 +17,6 @@ from boatsim.diagnosis.fit import ParameterSpace, log_prior
 from boatsim.diagnosis.free_runs import FAMILIES, free_runs
 from boatsim.diagnosis.output_error.weights import run_errors
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.work import integration_count
 from boatsim.physics.base import Array
 
 MODEL = "model"  # the only one whose free runs are simulated
@@ -71,14 +70,7 @@ class OutputErrors:
             for first, simulated in mapped.simulate_from(values, on, begin, mapped.fitting_step):
                 weight = next(weights)
                 parts += [weight * error for error in self._of_run(mapped, first, simulated)]
-            self._count(mapped)
         return np.concatenate(parts) if parts else np.zeros(0)
-
-    def _count(self, mapped: MappedRecording) -> None:
-        """Count the work of the free runs over a recording."""
-        steps = np.full(len(mapped.times), mapped.fitting_step)
-        integrations = integration_count(mapped.times, steps)
-        self.problem.work_count.add_pass(integrations, 0, mapped.program.module.NQ, 0.0)
 
     def _of_run(self, mapped: MappedRecording, first: int, simulated: Array) -> list[Array]:
         """Scaled errors of the recorded signals of one free run; 0 where nothing was recorded."""

@@ -32,6 +32,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.screening import gain_along, starting_fits
+from boatsim.diagnosis.stage_budgets import simulation_budget
 
 BEFORE, AFTER = "before", "after"
 
@@ -62,7 +63,7 @@ class OutputErrorSearch:
         """
         self.problem, self.held_out, self.fixed_effects = problem, held_out, fixed_effects
         self.config = problem.config.simulate
-        self.budget = budget or SearchBudget(problem.work_count, self.config.budget)
+        self.budget = budget or simulation_budget(problem)
         self.horizon = free_run_horizon(problem, held_out)
         self.errors = self._errors_of(start)
         self.added = 0  # number of effects

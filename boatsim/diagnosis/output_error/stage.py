@@ -21,6 +21,7 @@ from boatsim.diagnosis.recalibration import Recalibration
 from boatsim.diagnosis.search import generalization
 from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.ranking import Ranking
+from boatsim.diagnosis.stage_budgets import unsure_budget
 
 FIRST_SHARE = 0.5  # of the budget, for the first search, so that further ones can end
 
@@ -152,7 +153,7 @@ def _search_without_unsure(
         The vessel that was found from the start, if it predicts held-out recordings clearly better;
         else the one with these effects.
     """
-    budget = SearchBudget(problem.work_count, problem.config.simulate.unsure_budget)
+    budget = unsure_budget(problem)
     search = OutputErrorSearch(problem, start, held_out, start.effects, budget)
     search.add_effects(candidates)
     if _is_clearly_better(problem, search.model, corrected, held_out):

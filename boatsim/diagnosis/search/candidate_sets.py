@@ -27,6 +27,7 @@ from boatsim.diagnosis.search.screening import (
     starting_fits,
     starting_points,
 )
+from boatsim.diagnosis.stage_budgets import search_budget
 from boatsim.physics.base import RandomForce
 from boatsim.physics.groups import group_of, without_group
 
@@ -61,7 +62,7 @@ class CandidateSets:
             budget: Work that the search may do; None: that of the configuration, from now on.
         """
         self.problem = problem
-        self.budget = budget or SearchBudget(problem.work_count, problem.config.select.budget)
+        self.budget = budget or search_budget(problem)
         self.config = problem.config
         self.candidates = candidates
         self.base = base

@@ -12,8 +12,8 @@ import numpy as np
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.evidence import required_gain
+from boatsim.diagnosis.stage_budgets import description_budget
 from boatsim.diagnosis.symbolic.grammar import candidate_terms, term_variants
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term, unused_placeholder
 from boatsim.diagnosis.symbolic.term_forces import FittedRecording, fitted_recordings
@@ -77,8 +77,7 @@ def select_terms(
     report(DESCRIBING)
     config = problem.config
     formula = Formula(problem, best, {})
-    left = max(config.describe.total_budget - problem.work_count.work, 0)
-    budget = SearchBudget(problem.work_count, min(config.describe.budget, left))
+    budget = description_budget(problem)
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     if budget.is_spent:
         return _first_term(formula, everywhere)

@@ -45,12 +45,13 @@ def test_a_term_of_one_recording_costs_no_pass_over_another(mapped: tuple[Proble
 
 
 @pytest.mark.slow
-def test_a_description_ends_where_the_diagnosis_has_used_its_total_budget(
+def test_a_description_ends_where_nothing_of_the_work_of_the_diagnosis_is_left_to_it(
     mapped: tuple[Problem, Fit],
 ) -> None:
     problem, best = mapped
     assert len(select_terms(problem, best, ()).terms) > 1
-    spent = replace(DEFAULT.describe, total_budget=problem.work_count.work)
-    limited = replace(problem, config=replace(DEFAULT, describe=spent))
+    total = problem.work_count.work + DEFAULT.work.for_simulations
+    spent = replace(DEFAULT.work, total=total)
+    limited = replace(problem, config=replace(DEFAULT, work=spent))
     found = select_terms(limited, best, ())
     assert len(found.terms) == 1 and not found.complete

@@ -1,0 +1,37 @@
+"""Settings of the computing work of a whole diagnosis."""
+
+from dataclasses import dataclass
+
+from boatsim.diagnosis.config.setting import setting
+
+
+@dataclass(frozen=True)
+class WorkConfig:
+    """Limit of the computing work of a diagnosis, and the parts that are kept for its last stages.
+
+    Each long stage has a budget of its own besides, such as `select.budget`. It may use that, but
+    never what later stages need.
+    """
+
+    total: int = setting(
+        3_400_000_000,
+        "steps x dof",
+        "Work of a whole diagnosis, so that it ends within ten minutes of CPU on a slow processor. "
+        "Each long stage then ends early and states what it has not tried. Recordings of a minute "
+        "and a half need 5 to 60 million.",
+        low=1,
+    )
+    for_description: int = setting(
+        200_000_000,
+        "steps x dof",
+        "Work that the searches leave to the description of an unexplained force: enough for its "
+        "first term where the recordings are long.",
+        low=0,
+    )
+    for_simulations: int = setting(
+        800_000_000,
+        "steps x dof",
+        "Work that the searches and the description leave to the fit to free runs, which decides "
+        "how well the corrected vessel predicts.",
+        low=0,
+    )
