@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.filter import FilterPass, MappedRecording
+from boatsim.diagnosis.filter import FilterPass, MappedRecording, NoiseLevels
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -92,11 +92,23 @@ class DelayEstimator:
     def log_likelihood(self, parts: Parts, response: Response) -> float:
         """Return the log likelihood [nats] of a file whose commands act as a response states.
 
+        The gains of the Kalman filter are those of the recorded commands: the response changes the
+        motion that they cause, and hardly the linearisation.
+
         Args:
             parts: The mapped parts of the file.
             response: Delays and lags of its commands.
         """
-        return sum(one.log_likelihood for one in self._passes(parts, response))
+        found = 0.0
+        for mapped in parts:
+            recorded = self._pass(mapped)
+            moved = with_response(mapped, response)
+            arguments = self._arguments(moved)
+            # a copy of the pass knows no errors of other commands
+            errors = moved.whitened_errors(*arguments, about=replace(recorded))
+            change = float(errors @ errors - recorded.whitened @ recorded.whitened)
+            found += recorded.log_likelihood - 0.5 * change
+        return found
 
     def delay(self, parts: Parts) -> Delay | None:
         """Return the likeliest delay of a file; None if the log likelihood has no clear maximum.
@@ -168,13 +180,16 @@ class DelayEstimator:
         return float(found.x), -float(found.fun)
 
     def _passes(self, parts: Parts, response: Response) -> list[FilterPass]:
+        return [self._pass(with_response(mapped, response)) for mapped in parts]
+
+    def _pass(self, mapped: MappedRecording) -> FilterPass:
+        return mapped.filter(*self._arguments(mapped))
+
+    def _arguments(self, mapped: MappedRecording) -> tuple[Array, Array, NoiseLevels]:
+        """Values of the parameters, switches of the effects and noise levels of the fit."""
         on = self.problem.program.effect_switches(self.fit.effects)
-        found = []
-        for mapped in parts:
-            moved = with_response(mapped, response)
-            values = self.problem.parameter_vector(moved, self.fit.free, self.fit.theta)
-            found.append(moved.filter(values, on, self.fit.levels))
-        return found
+        values = self.problem.parameter_vector(mapped, self.fit.free, self.fit.theta)
+        return values, on, self.fit.levels
 
     def _sd(self, parts: Parts, delay: float, lag: float) -> float | None:
         """Standard deviation [s] from the scores of intervals; None without a maximum."""

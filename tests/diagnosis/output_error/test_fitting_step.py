@@ -82,4 +82,4 @@ def test_the_work_of_a_fit_falls_with_its_step() -> None:
     coarse = [replace(mapped, config=config) for mapped in problem.recordings]
     errors = replace(errors, recordings=coarse)
     # rows follow every 1/6 s: nine steps of 0.02 s become five of 0.04 s
-    assert work_of_a_pass() - CALL == pytest.approx((fine - CALL) * 5.0 / 9.0)
+    assert work_of_a_pass() - CALL == pytest.approx((fine - CALL) * 5.0 / 9.0, abs=1.0)

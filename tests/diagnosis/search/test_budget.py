@@ -24,7 +24,7 @@ from boatsim.diagnosis.search import ranking as ranking_stage
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_addition_to_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
-from boatsim.diagnosis.work import CALL, WorkCount
+from boatsim.diagnosis.work import CALL, CORRECTION, WorkCount
 from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
@@ -69,11 +69,13 @@ def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
     problem.log_likelihood(found.free, found.theta, on, found.levels)  # known from the pass
     assert problem.work_count.work == before
     problem.whitened_errors(found.free, found.theta, on, found.levels, passes)
-    work = 0
+    work, dof = 0, len(problem.program.vessel.dof)
     for mapped in problem.recordings:
         intervals = np.diff(mapped.times)
         steps = sum(max(1, math.ceil(h / mapped.largest_step - 1e-9)) for h in intervals)
-        work += CALL + steps * len(problem.program.vessel.dof)
+        rows, channels = mapped.measured.shape
+        corrections = CORRECTION * rows * dof * (dof + channels) / 2
+        work += CALL + round(steps * dof + corrections)
     assert problem.work_count.work == before + work
 
 
