@@ -115,7 +115,7 @@ class FilterPass:
     # (N, C) inverse sds of the prediction errors, less for outliers, 0 where missing
     scale: Array
     transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
-    steps: Array  # (N,) integration steps [s]
+    steps: Array  # (N,) longest integration step before each row [s]; the first is their number
     integrations: float  # number of integration steps between the rows
 
     @cached_property
@@ -333,10 +333,7 @@ class MappedRecording:
         arrays = PassArrays(transitions, steps, gains, scale, whitened)
         packed = self._filter_arguments.pack_arrays(arrays)
         found = self._run(values, on, levels, packed, fresh=about is None)
-        if about is None:
-            integrations = integration_count(self.times, steps)
-        else:
-            integrations = about.integrations
+        integrations = float(steps[0]) if about is None else about.integrations
         further = COVARIANCE if about else COVARIANCE + DERIVATIVES
         self._count_pass(integrations, further)
         return FilterPass(
@@ -404,8 +401,8 @@ class MappedRecording:
 
     def _count_pass(self, integrations: float, further: float) -> None:
         """Count the work of a pass that computes more than corrections in each row."""
-        steps, shape = integrations + self._changes_between_rows, self.measured.shape
-        self.filtered.add_pass(steps, shape, self.program.module.NQ, CORRECTION + further)
+        nq, shape = self.program.module.NQ, self.measured.shape
+        self.filtered.add_pass(integrations, shape, nq, CORRECTION + further)
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).
@@ -442,8 +439,7 @@ class MappedRecording:
         for _ in range(self.config.smoother_passes):
             start = own.pack_start(rates)
             self._run(values, on, levels, packed, start=start, history=history)
-            integrations = integration_count(self.times, arrays.steps)
-            self._count_pass(integrations, COVARIANCE + DERIVATIVES + SMOOTHER)
+            self._count_pass(float(arrays.steps[0]), COVARIANCE + DERIVATIVES + SMOOTHER)
             self.program.estimation_functions.smooth_states(
                 keep, gains, self.times, own.force, values, on
             )
@@ -522,7 +518,8 @@ class MappedRecording:
         """Number of integration steps of free runs over the whole recording."""
         known = self._integrations_by_step
         if step not in known:
-            known[step] = integration_count(self.times, np.full(len(self.times), step))
+            count = integration_count(self.times, np.full(len(self.times), step))
+            known[step] = count + self._changes_between_rows
         return known[step]
 
     def free_run_starts(

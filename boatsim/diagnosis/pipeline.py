@@ -530,8 +530,9 @@ def try_last_candidates(
     """Select again with candidates that are tried last, where these may explain what is left.
 
     They are tried where a force stays unexplained, or where an effect was selected that they are
-    confounded with, and if one of them gains `select.last_gain`
-    on top of what was selected, or of the vessel alone.
+    confounded with, and if one of them gains `select.last_gain` on top of what was selected, or of
+    the vessel alone. Where the first search has used its budget, one of them must gain at least
+    `select.last_share` of what that search gained: the second one does half of its work.
 
     Args:
         loaded: Recordings.
@@ -558,12 +559,13 @@ def try_last_candidates(
     compile_program(again.problem)
     base = fit_baseline_models(again)
     tested = [name for name in again.candidates if name not in question.candidates]
-    gain = largest_gain_on_top(again.problem, ranking.best, tested)
+    gain = alone = largest_gain_on_top(again.problem, ranking.best, tested)
     if ranking.has_unexplained_force_or_cause:  # stand-ins may have taken up its force
-        gain = max(gain, largest_gain_on_top(again.problem, base.recalibrated, tested))
-    if gain < config.select.last_gain:
+        alone = largest_gain_on_top(again.problem, base.recalibrated, tested)
+    if max(gain, alone) < config.select.last_gain:
         return loaded, question, decision
-    if search_budget(again.problem, config.select.last_budget).is_spent:
+    is_small = ranking.skipped and alone < config.select.last_share * _gain(ranking)
+    if is_small or search_budget(again.problem, config.select.last_budget).is_spent:
         ranking = _with_skipped(ranking, not_tried_statement(last))
         return loaded, question, replace(decision, ranking=ranking)
     selection = select_candidates(again, base, wider, report, config.select.last_budget)

@@ -46,6 +46,15 @@ class SelectConfig:
         "`budget`, because most candidates have been tried before.",
         low=1,
     )
+    last_share: float = setting(
+        0.5,
+        "1",
+        "Share of the evidence that the selected effects gain, which a candidate that is tried "
+        "last must gain alone, where the first search ended at its budget: the second one has "
+        "half of its work.",
+        0.0,
+        1.0,
+    )
     again_share: float = setting(
         0.5,
         "1",

@@ -102,13 +102,13 @@ def predict_motion(
     laws: LawArguments,
     plant: VesselState,
     moves: bool,
-) -> int:
+) -> tuple[int, int]:
     """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
 
     The filter uses it for its prediction. Unless `moves` is true, only the actuators are advanced.
     The motion of row i happened `delay` before its time. `row` is the last row of
-    commands used so far; returns the one used last. No step extends beyond a change of an
-    actuator's signal.
+    commands used so far; returns the one used last, and the number of steps. No step extends
+    beyond a change of an actuator's signal.
     """
     times, given, commands = inputs
     p, on, k = laws
@@ -116,6 +116,7 @@ def predict_motion(
     h = times[i] - times[i - 1]
     longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
     begin, done, least, before = times[i - 1] - delay, 0.0, SHORTEST, 0.0
+    steps = np.int64(0)
     while h - done > 1e-9:
         while row + 1 < len(given) and given[row + 1] <= begin + done + 1e-9:
             row += 1
@@ -130,7 +131,8 @@ def predict_motion(
         if moves:
             step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
-    return row
+        steps += 1
+    return row, steps
 
 
 @lean
@@ -322,21 +324,23 @@ def predict_motion_and_transition(
 
     The matrix is linearised about the state z at the begin. The integration steps are adapted to
     the quickest motion: those of the row before may be too long. Fills steps[i] and a first guess
-    for the next row.
+    for the next row, and adds the number of steps to steps[0].
     """
     inputs, plant, times = f.inputs, f.plant, f.inputs.times
     h = times[i] - times[i - 1]
     if i == 1:
         steps[i] = max_step
     copy_vector(plant.memory, f.work.memory)
-    last = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant, True)
+    last, count = predict_motion(inputs, i, f.delay, row, steps[i], f.laws, plant, True)
+    steps[0] += count
     rate = state_transition(times[i - 1] - f.delay, h, z, f.laws, plant, f.work)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
         set_plant_from_state(z, h, f.noise, plant)
         copy_vector(f.work.memory, plant.memory)
-        last = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant, True)
+        last, count = predict_motion(inputs, i, f.delay, row, longest, f.laws, plant, True)
+        steps[0] += count
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -511,6 +515,8 @@ def kalman_filter(
     about = np.zeros(NZ)
     initialise_filter(start, noise, estimate)
     remove_position_errors(z, 0.0, p, on)
+    if options.gains and options.linearise:
+        out.steps[0] = 0.0
     likelihood, last = 0.0, np.int64(0)  # with a plain 0 `predict_motion` would be compiled twice
     if options.history:
         copy_vector(z, history.means[0])
@@ -527,7 +533,7 @@ def kalman_filter(
             last = predict_motion_and_transition(f, i, last, about, options.max_step, out.steps)
             copy_square_matrix(F, out.transitions[i], LASTING)
         else:
-            last = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant, True)
+            last, _ = predict_motion(inputs, i, delay, last, out.steps[i], f.laws, plant, True)
             if options.gains or i == 1:
                 copy_square_matrix(out.transitions[i], F, LASTING)
         if i == 1:
@@ -644,7 +650,7 @@ def simulate_intervals(
         if i > 0:
             for j in range(NY):
                 y[j] = states[path + i - 1, j] if moves else 0.0
-            last = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
+            last, _ = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
         for run in range(len(starts)):
             if starts[run] == i:
                 copy_vector(memory, saved[run])
@@ -655,7 +661,7 @@ def simulate_intervals(
         last = rows[run]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                last = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
+                last, _ = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
             for code in range(NY):
                 t = times[i] - times[0]
                 out[run, i, code] = predicted_measurement(y, t, code, p, on)

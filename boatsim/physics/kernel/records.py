@@ -126,7 +126,9 @@ class PassArrays(NamedTuple):
     """
 
     transitions: Array  # (N, 3 NQ, 3 NQ) of motion and latent forces
-    steps: Array  # (N,) [s] longest integration step that follows the quickest motion
+    # (N,) [s] longest integration step before each row that follows the quickest motion; the first
+    # entry is the number of steps
+    steps: Array
     gains: Array  # (N, C, NZ)
     scale: Array  # (N, C) inverse sd of the prediction errors, 0 where missing, less for an outlier
     whitened: Array  # (N, C) prediction errors in standard deviations
