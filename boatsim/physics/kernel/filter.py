@@ -102,7 +102,7 @@ def predict_motion(
     laws: LawArguments,
     plant: VesselState,
     moves: bool,
-) -> tuple[int, int]:
+) -> tuple[int, np.int64]:
     """Integrate the vessel's motion from row i - 1 to row i of a recording, in place.
 
     The filter uses it for its prediction. Unless `moves` is true, only the actuators are advanced.
