@@ -141,6 +141,17 @@ def test_a_unit_that_nothing_shows_is_asked(tmp_path: Path) -> None:
     assert np.degrees(np.mean(recording["wind_from_rad"])) == pytest.approx(200.0, abs=1.0)
 
 
+def test_a_direction_whose_name_contradicts_the_motion_is_asked(tmp_path: Path) -> None:
+    run = voyage()
+    strength, comes_from = blown(run)
+    log = {**common_columns(run), "rel_wind_speed_kn": strength / KN}
+    log["rel_wind_to_deg"] = np.degrees(comes_from) % 360.0
+    recording, text = imported(tmp_path, boat(tmp_path, APPARENT), log)
+    assert "apparent_wind_from_rad" not in recording.signals
+    assert "the motion of the boat shows from which" in text
+    assert '# apparent_wind_from_rad = "rel_wind_to_deg * deg + 180 * deg"' in text
+
+
 def test_a_map_states_the_columns_of_the_wind_that_a_vessel_may_name(tmp_path: Path) -> None:
     run = voyage()
     strength, comes_from = blown(run)
