@@ -57,7 +57,7 @@ from boatsim.diagnosis.locate.location import Location, locate_force
 from boatsim.diagnosis.open_set.decision import Decision, decision_without_fit
 from boatsim.diagnosis.open_set.decision import decide as judge_names
 from boatsim.diagnosis.output_error.balanced_forces import add_balanced_forces
-from boatsim.diagnosis.output_error.stage import fit_to_simulations
+from boatsim.diagnosis.output_error.stage import fit_to_simulations, is_unsure
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.question import Question, compile_program, set_up_estimation_problem
 from boatsim.diagnosis.recalibration import (
@@ -697,7 +697,8 @@ def improve_simulations(question: Question, decision: Decision, ranking: Ranking
         ranking: Selected and described effects, with the adopted coefficients.
     """
     problem = decision.problem
-    budget = simulation_budget(problem)
+    unsure = [one for one in ranking.named if is_unsure(problem, one.probability)]
+    budget = simulation_budget(problem, has_unsure=bool(unsure))
     found = fit_to_simulations(problem, ranking, question.candidates, question.held_out, budget)
     return _with_skipped(found, EFFECTS_NOT_ADDED) if budget.is_spent else found
 

@@ -39,13 +39,16 @@ def description_budget(problem: Problem) -> SearchBudget:
     return _budget(problem, config.describe.budget, config.work.for_simulations)
 
 
-def simulation_budget(problem: Problem) -> SearchBudget:
+def simulation_budget(problem: Problem, *, has_unsure: bool = False) -> SearchBudget:
     """Return the budget of the fit to free runs.
 
     Args:
         problem: The estimation problem, with the count of the work so far.
+        has_unsure: Whether effects are stated that are only probably causes, so that a search
+            without them follows.
     """
-    return _budget(problem, problem.config.simulate.budget, 0)
+    simulate = problem.config.simulate
+    return _budget(problem, simulate.budget, simulate.unsure_budget if has_unsure else 0)
 
 
 def unsure_budget(problem: Problem) -> SearchBudget:

@@ -68,6 +68,15 @@ def test_a_stage_leaves_the_work_of_later_ones(problem: Problem) -> None:
     assert simulation_budget(little).remaining_work == 1000
 
 
+def test_the_first_fit_to_free_runs_leaves_work_to_one_without_unsure_effects(
+    problem: Problem,
+) -> None:
+    kept = DEFAULT.simulate.unsure_budget
+    little = with_work(problem, kept + 700)
+    assert simulation_budget(little, has_unsure=True).remaining_work == 700
+    assert simulation_budget(little).remaining_work == kept + 700
+
+
 def test_nothing_is_left_where_later_stages_need_all(problem: Problem) -> None:
     little = with_work(problem, 1000, description=100, simulations=1200)
     assert search_budget(little).is_spent and description_budget(little).is_spent

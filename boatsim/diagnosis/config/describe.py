@@ -26,10 +26,10 @@ class DescribeConfig:
         low=0,
     )
     budget: int = setting(
-        650_000_000,
+        400_000_000,
         "steps x dof",
         "Work of the description, counted as in `select.budget`; then no further term is sought. "
-        "It takes 1 to 2 minutes, and gets less where `work.total` leaves less.",
+        "It takes about a minute, and gets less where `work.total` leaves less.",
         low=1,
     )
     fitted_terms: int = setting(

@@ -31,16 +31,17 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        1_300_000_000,
+        900_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
         "freedom, and what takes as long as these. Recordings of a minute and a half need 5 to "
-        "40 million. 1,300 million take 2 to 3 minutes; then the search ends and reports what it "
-        "has not tried. It gets less where `work.total` leaves less.",
+        "40 million. 900 million take about 2 minutes; then the step that has begun and the "
+        "removal of effects are completed, which takes another minute, and the search reports "
+        "what it has not tried. It gets less where `work.total` leaves less.",
         low=1,
     )
     last_budget: int = setting(
-        650_000_000,
+        450_000_000,
         "steps x dof",
         "Work of the second search, in which candidates that are tried last take part. Half of "
         "`budget`, because most candidates have been tried before.",

@@ -22,14 +22,14 @@ class WorkConfig:
         low=1,
     )
     for_description: int = setting(
-        200_000_000,
+        150_000_000,
         "steps x dof",
         "Work that the searches leave to the description of an unexplained force: enough for its "
         "first term where the recordings are long.",
         low=0,
     )
     for_simulations: int = setting(
-        800_000_000,
+        1_000_000_000,
         "steps x dof",
         "Work that the searches and the description leave to the fit to free runs, which decides "
         "how well the corrected vessel predicts.",

@@ -126,8 +126,21 @@ def contradicted_effects(
 
 def _unsure_effects(problem: Problem, ranking: Ranking, stated: Sequence[str]) -> list[str]:
     """Names of the stated effects that are only probably causes."""
-    sure = problem.config.decide.sure_probability
-    return [one.name for one in ranking.named if one.name in stated and one.probability < sure]
+    found = []
+    for one in ranking.named:
+        if one.name in stated and is_unsure(problem, one.probability):
+            found.append(one.name)
+    return found
+
+
+def is_unsure(problem: Problem, probability: float) -> bool:
+    """Return whether an effect that is stated with some probability is only probably a cause.
+
+    Args:
+        problem: The estimation problem with its configuration.
+        probability: Probability that the effect is a cause, 0 to 1.
+    """
+    return probability < problem.config.decide.sure_probability
 
 
 def _search_without_unsure(
