@@ -494,7 +494,8 @@ class MappedRecording:
         nq = self.program.module.NQ
         step = self.config.free_run_step if step is None else step
         self.filtered.add_free_runs(self._integrations_of_free_runs(step), nq)
-        out = np.full((len(begin.starts), len(self.times), 2 * nq), np.nan)
+        # only the rows of each run are filled and read
+        out = np.empty((len(begin.starts), len(self.times), 2 * nq))
         self.program.estimation_functions.simulate_intervals(
             self.times_and_commands,
             step,

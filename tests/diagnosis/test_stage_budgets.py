@@ -122,8 +122,8 @@ def decision(loaded: LoadedRecordings, question: Question) -> Decision:
 @pytest.mark.parametrize(
     ("skipped", "share", "work", "searches"),
     [
-        ((), 0.1, DEFAULT.work, True),
-        (("wind was not added",), 0.1, DEFAULT.work, False),
+        ((), 0.08, DEFAULT.work, True),
+        (("wind was not added",), 0.08, DEFAULT.work, False),
         (("wind was not added",), 0.9, DEFAULT.work, True),
         ((), 0.9, WorkConfig(1, 0, 0), False),
     ],
@@ -140,7 +140,7 @@ def test_the_second_search_begins_only_where_it_can_reach_as_much(
 ) -> None:
     ranking = replace(decision.ranking, skipped=skipped)
     gained = float(ranking.best.evidence - ranking.recalibrated.evidence)
-    assert 0.1 * gained > 5.0
+    assert 0.08 * gained > 5.0
 
     def search(*_: object) -> Selection:
         raise Searched

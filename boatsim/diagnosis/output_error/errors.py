@@ -9,8 +9,11 @@ Flight Vehicle System Identification, 2nd ed. 2015, chapter 4).
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.diagnosis.filter import FreeRunStarts, MappedRecording
 from boatsim.diagnosis.fit import ParameterSpace, log_prior
@@ -22,6 +25,22 @@ from boatsim.physics.base import Array
 MODEL = "model"  # the only one whose free runs are simulated
 STEP = 1e-3  # of finite differences, in prior sds
 FAMILY_OF = {name: family for family, signals in FAMILIES.items() for name in signals}
+
+
+class RecordedSignal(NamedTuple):
+    """A signal of a free run as it was recorded.
+
+    Attributes:
+        code: Index of the coordinate that it shows.
+        measured: (M,) its values, nan where nothing was recorded.
+        known: (M,) whether a value was recorded.
+        unit: Error that counts as one, for a single row.
+    """
+
+    code: int
+    measured: Array
+    known: NDArray[np.bool_]
+    unit: float
 
 
 @dataclass(frozen=True)
@@ -65,24 +84,35 @@ class OutputErrors:
         """
         on = self.problem.program.effect_switches(found.effects)
         parts, weights = list[Array](), iter(np.sqrt(self.weights))
-        for mapped, begin in zip(self.recordings, starts or self.starts(found), strict=True):
+        each = zip(self.recordings, starts or self.starts(found), strict=True)
+        for number, (mapped, begin) in enumerate(each):
             values = self.problem.parameter_vector(mapped, found.free, found.theta)
             for first, simulated in mapped.simulate_from(values, on, begin, mapped.fitting_step):
                 weight = next(weights)
-                parts += [weight * error for error in self._of_run(mapped, first, simulated)]
+                for code, measured, known, unit in self._signals(number, first, len(simulated)):
+                    error = np.where(known, simulated[:, code] - measured, 0.0)
+                    parts.append(weight * (error / unit))
         return np.concatenate(parts) if parts else np.zeros(0)
 
-    def _of_run(self, mapped: MappedRecording, first: int, simulated: Array) -> list[Array]:
-        """Scaled errors of the recorded signals of one free run; 0 where nothing was recorded."""
-        found = []
+    def _signals(self, number: int, first: int, rows: int) -> list[RecordedSignal]:
+        """The recorded signals of a free run: recording, first row and number of its rows."""
+        key = number, first, rows
+        if key in self._known_signals:
+            return self._known_signals[key]
+        mapped, found = self.recordings[number], list[RecordedSignal]()
         for c, (code, signal) in enumerate(zip(mapped.codes, mapped.signals, strict=True)):
             scale = self.scale.get(FAMILY_OF.get(signal, ""))
             if code < mapped.program.module.NQ and scale:
-                measured = mapped.measured[first : first + len(simulated), c]
+                measured = mapped.measured[first : first + rows, c]
                 known = np.isfinite(measured)
-                error = np.where(known, simulated[:, code] - measured, 0.0)
-                found.append(error / (scale * np.sqrt(max(int(known.sum()), 1))))
+                unit = float(scale * np.sqrt(max(int(known.sum()), 1)))
+                found.append(RecordedSignal(int(code), measured, known, unit))
+        self._known_signals[key] = found
         return found
+
+    @cached_property
+    def _known_signals(self) -> dict[tuple[int, int, int], list[RecordedSignal]]:
+        return {}
 
     def derivatives(
         self,
