@@ -81,7 +81,8 @@ class FlexibleModel:
         memories, rows = [memory.copy()], [0]
         for i in range(1, len(mapped.times)):  # only for the actuators
             y[:] = 0.0
-            rows.append(module.predict_motion(inputs, i, delay, rows[-1], step, laws, plant, True))
+            last, _ = module.predict_motion(inputs, i, delay, rows[-1], step, laws, plant, True)
+            rows.append(last)
             memories.append(memory.copy())
         runs = []
         for begin, end in zip(starts, ends, strict=True):
@@ -89,7 +90,7 @@ class FlexibleModel:
             states = [y.copy()]
             for i in range(begin + 1, end + 1):
                 plant.force[:] = self._force(module, y, _command_at(inputs, mapped.times[i - 1]))
-                last = module.predict_motion(inputs, i, delay, last, step, laws, plant, True)
+                last, _ = module.predict_motion(inputs, i, delay, last, step, laws, plant, True)
                 states.append(y.copy())
             runs.append(np.array(states))
         return runs
