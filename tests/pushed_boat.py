@@ -35,6 +35,11 @@ def push(thrust: Array, steer: Array) -> Array:
     return np.array([X.sum(), Y.sum(), X_MOTOR * Y.sum() + Y_MOTOR * (X[0] - X[1])])
 
 
+def weak_astern(t: float, y: Array, command: Array) -> Array:
+    """A third of the thrust astern is missing."""
+    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
+
+
 def sail(
     name: str,
     seed: int,

@@ -559,13 +559,15 @@ def try_last_candidates(
     compile_program(again.problem)
     base = fit_baseline_models(again)
     tested = [name for name in again.candidates if name not in question.candidates]
-    gain = alone = largest_gain_on_top(again.problem, ranking.best, tested)
+    on_top = largest_gain_on_top(again.problem, ranking.best, tested)
+    alone = on_top
     if ranking.has_unexplained_force_or_cause:  # stand-ins may have taken up its force
         alone = largest_gain_on_top(again.problem, base.recalibrated, tested)
-    if max(gain, alone) < config.select.last_gain:
+    if max(on_top, alone) < config.select.last_gain:
         return loaded, question, decision
-    is_small = ranking.skipped and alone < config.select.last_share * _gain(ranking)
-    if is_small or search_budget(again.problem, config.select.last_budget).is_spent:
+    ended_early = bool(ranking.skipped)
+    too_little = ended_early and alone < config.select.last_share * _gain(ranking)
+    if too_little or search_budget(again.problem, config.select.last_budget).is_spent:
         ranking = _with_skipped(ranking, not_tried_statement(last))
         return loaded, question, replace(decision, ranking=ranking)
     selection = select_candidates(again, base, wider, report, config.select.last_budget)

@@ -6,9 +6,10 @@ import numpy as np
 
 from boatsim.physics.base import Array
 
-# The constants define the unit of all budgets of work and are no settings. They were fitted to the
-# CPU times of passes over the recordings of a boat, a ferry, a ship, a hovercraft and a ship
-# section; the unit is one integration step of one degree of freedom, about 0.1 microseconds.
+# The constants define the unit of all budgets of work and are no settings. The unit is one
+# integration step of one degree of freedom, 0.1 to 0.2 microseconds. CORRECTION, COVARIANCE,
+# DERIVATIVES and CALL follow from the CPU times of passes over the recordings of a boat, a ferry, a
+# ship, a hovercraft and a ship section; the others are rough estimates.
 # Work per row, degree of freedom, and mean of the numbers of degrees of freedom and channels:
 CORRECTION = 1.0  # corrections of the state by the recorded signals, with known gains
 COVARIANCE = 0.8  # covariances of the filter, which give its gains

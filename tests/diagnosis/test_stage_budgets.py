@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
-from pushed_boat import BOAT, laid, push, sail
+from pushed_boat import BOAT, laid, sail, weak_astern
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
@@ -21,15 +20,9 @@ from boatsim.diagnosis.stage_budgets import (
     simulation_budget,
     unsure_budget,
 )
-from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
 FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
-
-
-def weak_astern(t: float, y: Array, command: Array) -> Array:
-    """A third of the thrust astern is missing."""
-    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pushed_boat import BOAT, push, sail
+from pushed_boat import BOAT, sail, weak_astern
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.answer.compose import compose_answer
@@ -17,16 +17,10 @@ from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
 ONLY = "weak_reverse"  # the candidate that is tested
 FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
-
-
-def weak_astern(t: float, y: Array, command: Array) -> Array:
-    """A third of the thrust astern is missing."""
-    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
 
 
 @pytest.fixture(scope="module")

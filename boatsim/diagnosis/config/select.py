@@ -34,10 +34,10 @@ class SelectConfig:
         900_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
-        "freedom, and what takes as long as these. Recordings of a minute and a half need 5 to "
-        "40 million. 900 million take about 2 minutes; then the step that has begun and the "
-        "removal of effects are completed, which takes another minute, and the search reports "
-        "what it has not tried. It gets less where `work.total` leaves less.",
+        "freedom, and what takes as long as these. 900 million take about 2 minutes; then the "
+        "step that has begun and the removal of effects are completed, which takes another "
+        "minute, and the search reports what it has not tried. It gets less where `work.total` "
+        "leaves less.",
         low=1,
     )
     last_budget: int = setting(

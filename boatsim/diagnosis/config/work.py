@@ -9,16 +9,16 @@ from boatsim.diagnosis.config.setting import setting
 class WorkConfig:
     """Limit of the computing work of a diagnosis, and the parts that are kept for its last stages.
 
-    Each long stage has a budget of its own besides, such as `select.budget`. It may use that, but
-    never what later stages need.
+    Each long stage also has a budget of its own, such as `select.budget`. It gets less where later
+    stages would get nothing.
     """
 
     total: int = setting(
         3_400_000_000,
         "steps x dof",
-        "Work of a whole diagnosis, so that it ends within ten minutes of CPU on a slow processor. "
-        "Each long stage then ends early and states what it has not tried. Recordings of a minute "
-        "and a half need 5 to 60 million.",
+        "Work of a whole diagnosis. It takes 5 to 10 minutes of CPU on a slow processor, more for "
+        "vessels with many drives. Each long stage then ends early and states what it has not "
+        "tried.",
         low=1,
     )
     for_description: int = setting(

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pushed_boat import BOAT, push, sail
+from pushed_boat import BOAT, sail, weak_astern
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.answer.incomplete import (
@@ -25,16 +25,10 @@ from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_a
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.work import CALL, CORRECTION, WorkCount
-from boatsim.physics.base import Array
 from boatsim.recordings.table import write_csv
 
 FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
 CANDIDATES = ("weak_reverse", "steady_force", "thrust_lag", "wave_forcing")
-
-
-def weak_astern(t: float, y: Array, command: Array) -> Array:
-    """A third of the thrust astern is missing."""
-    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
 
 
 @pytest.fixture(scope="module")
