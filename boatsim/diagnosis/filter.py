@@ -27,8 +27,8 @@ from boatsim.diagnosis.work import (
     COVARIANCE,
     DERIVATIVES,
     SMOOTHER,
+    RecordingSize,
     WorkCount,
-    integration_count,
 )
 from boatsim.physics.base import DriftingMeasurement, MotionMemory, RandomForce
 from boatsim.physics.kernel.records import (
@@ -186,6 +186,13 @@ class FreeRunStarts(NamedTuple):
     # (N, 2 NQ) those of all rows, where effects remember the motion before a run; else (0, 2 NQ)
     path: Array
 
+    @property
+    def key(self) -> bytes:
+        """All that the starts consist of, as one key."""
+        parts = [self.starts, self.ends, self.states, self.path]
+        parts += [drift.offsets for drift in self.drifts]
+        return b"".join(part.tobytes() for part in parts)
+
 
 @dataclass(frozen=True, eq=False)
 class MappedRecording:
@@ -248,10 +255,6 @@ class MappedRecording:
     def _smoothed(self) -> RecentResults[SmoothedStates]:
         size = 2 * len(self.times) * self.program.module.NZ**2
         return RecentResults(min(KEPT_SMOOTHED, LARGEST_SMOOTHED // size))
-
-    @cached_property
-    def _integrations_by_step(self) -> dict[float, float]:
-        return {}
 
     @cached_property
     def _free_runs(self) -> RecentResults[list[tuple[int, Array]]]:
@@ -401,8 +404,12 @@ class MappedRecording:
 
     def _count_pass(self, integrations: float, further: float) -> None:
         """Count the work of a pass that computes more than corrections in each row."""
-        nq, shape = self.program.module.NQ, self.measured.shape
-        self.filtered.add_pass(integrations, shape, nq, CORRECTION + further)
+        self.filtered.add_pass(integrations, self._size, CORRECTION + further)
+
+    @cached_property
+    def _size(self) -> RecordingSize:
+        rows, channels = self.measured.shape
+        return RecordingSize(rows, channels, self.program.module.NQ, self.commands.shape[1])
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).
@@ -493,10 +500,9 @@ class MappedRecording:
             return []
         nq = self.program.module.NQ
         step = self.config.free_run_step if step is None else step
-        self.filtered.add_free_runs(self._integrations_of_free_runs(step), nq)
         # only the rows of each run are filled and read
         out = np.empty((len(begin.starts), len(self.times), 2 * nq))
-        self.program.estimation_functions.simulate_intervals(
+        steps = self.program.estimation_functions.simulate_intervals(
             self.times_and_commands,
             step,
             VesselNumbers(rigid_body_values(values), values, on),
@@ -505,6 +511,7 @@ class MappedRecording:
             np.concatenate([begin.states, begin.path]),
             out,
         )
+        self.filtered.add_free_runs(steps, self._size)
         runs = []
         for simulated, first, last in zip(out, begin.starts, begin.ends, strict=True):
             runs.append((int(first), simulated[first : last + 1].copy()))
@@ -514,14 +521,6 @@ class MappedRecording:
                 since = self.times[first : first + len(channels)] - self.times[first]
                 channels[:, :nq] += offset * np.exp(-since / decay_time)[:, None]
         return runs
-
-    def _integrations_of_free_runs(self, step: float) -> float:
-        """Number of integration steps of free runs over the whole recording."""
-        known = self._integrations_by_step
-        if step not in known:
-            count = integration_count(self.times, np.full(len(self.times), step))
-            known[step] = count + self._changes_between_rows
-        return known[step]
 
     def free_run_starts(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float, skipped: float = 0.0
@@ -642,13 +641,6 @@ class MappedRecording:
             self.initial_state_prior,
             self._vessel_arguments.numbers,
         )
-
-    @cached_property
-    def _changes_between_rows(self) -> int:
-        """Number of changes of commands after the first row that are not at the time of a row."""
-        changes = self.command_times
-        inside = changes[(changes > self.times[0]) & (changes < self.times[-1])]
-        return len(np.setdiff1d(inside, self.times))
 
     def _white_noise(self, levels: NoiseLevels) -> Array:
         """Spectral densities (NQ,) of the noise of measured forces."""

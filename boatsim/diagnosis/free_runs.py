@@ -96,7 +96,8 @@ def free_runs(
         for name, fit in fits.items():
             values = problem.parameter_vector(mapped, fit.free, fit.theta)
             on = problem.program.effect_switches(fit.effects)
-            runs[name] = mapped.free_runs(values, on, fit.levels, horizon, skipped)
+            acting = problem.switches_in(mapped, fit.free, on)
+            runs[name] = mapped.free_runs(values, acting, fit.levels, horizon, skipped)
         segments = zip(*free_run_segments(mapped.times, horizon, skipped), strict=True)
         for i, (begin, end) in enumerate(segments):
             simulated = {name: own[i][1] for name, own in runs.items()}

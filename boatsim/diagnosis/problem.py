@@ -487,7 +487,7 @@ class Problem:
         before = about.passes if about else [None] * len(self.recordings)
         found = []
         for mapped, one in zip(self.recordings, before, strict=True):
-            acting = self._switches(mapped, free, on)
+            acting = self.switches_in(mapped, free, on)
             found.append(
                 mapped.filter(self.parameter_vector(mapped, free, theta), acting, levels, one)
             )
@@ -509,14 +509,21 @@ class Problem:
         found = 0.0
         for mapped, one in zip(self.recordings, before, strict=True):
             values = self.parameter_vector(mapped, free, theta)
-            acting = self._switches(mapped, free, on)
+            acting = self.switches_in(mapped, free, on)
             found += mapped.log_likelihood(values, acting, levels, one)
         return found
 
-    def _switches(self, mapped: MappedRecording, free: Sequence[FreeParameter], on: Array) -> Array:
-        """(effects,) 1 for the effects that act on a recording, 0 for those of other groups.
+    def switches_in(
+        self, mapped: MappedRecording, free: Sequence[FreeParameter], on: Array
+    ) -> Array:
+        """Return 1 for each effect that acts on a recording, 0 for those of other groups.
 
-        Effects of other groups have zero size; without them the filter repeats no work.
+        Effects of other groups have zero size; without them no work is repeated.
+
+        Args:
+            mapped: The mapped recording.
+            free: Free parameters of a hypothesis.
+            on: (effects,) 1 for the effects of this hypothesis, else 0.
         """
         if not any(parameter.group for parameter in free):
             return on
@@ -556,7 +563,7 @@ class Problem:
         for mapped, one in zip(self.recordings, about.passes, strict=True):
             values, acting = (
                 self.parameter_vector(mapped, free, theta),
-                self._switches(mapped, free, on),
+                self.switches_in(mapped, free, on),
             )
             found.append(mapped.whitened_errors(values, acting, levels, one))
         return np.concatenate(found)
@@ -590,7 +597,7 @@ class Problem:
         for mapped, one in zip(self.recordings, about.passes, strict=True):
             values, acting = (
                 self.parameter_vector(mapped, free, theta),
-                self._switches(mapped, free, on),
+                self.switches_in(mapped, free, on),
             )
             errors = mapped.whitened_errors(values, acting, levels, one)
             total += float(errors @ errors)

@@ -273,12 +273,13 @@ class CompiledProgram(Protocol):
         ends: Rows,
         states: Array,
         out: Array,
-    ) -> None:
+    ) -> float:
         """Simulate intervals of a recording from given states, under the recorded commands.
 
         Run j extends from row starts[j] to row ends[j] and begins at states[j] (2 NQ,). Fills out
         (runs, N, 2 NQ) with all channels as the recording would show them. States of all rows of
-        the recording may follow those of the runs, for effects that remember the motion.
+        the recording may follow those of the runs, for effects that remember the motion. Returns
+        the number of integration steps.
         """
 
     def remove_position_errors(self, z: Array, t: float, p: Array, on: Array) -> None:

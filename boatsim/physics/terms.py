@@ -120,11 +120,12 @@ def term_value(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
         own: Index, counted from `at`, of the term's lagged signal.
     """
     detail = (q.wavelength, q.crest, q.little, q.beyond)
+    # most terms have one or two factors; a hull with many drives evaluates a term for each
     return (
         factor_value(m, act, at, own, q.first, detail)
-        * factor_value(m, act, at, own, q.second, detail)
-        * factor_value(m, act, at, own, q.third, detail)
-        * time_profile(m.t, q.course, q.begin, q.end)
+        * (factor_value(m, act, at, own, q.second, detail) if q.second != 0.0 else 1.0)
+        * (factor_value(m, act, at, own, q.third, detail) if q.third != 0.0 else 1.0)
+        * (time_profile(m.t, q.course, q.begin, q.end) if q.course != 0.0 else 1.0)
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
 from boatsim.diagnosis.config import ChecksConfig
@@ -243,13 +244,17 @@ def with_response(mapped: MappedRecording, response: Response) -> MappedRecordin
 def _lagged(times: Array, values: Array, fine: Array, lags: Array) -> tuple[Array, Array]:
     """Commands (N, K) at finer times (N,) [s] through lags (K,) [s], held until the next."""
     orders = values[np.maximum(np.searchsorted(times, fine, side="right") - 1, 0)]
-    states = orders.copy()
-    kept = np.exp(-np.diff(fine)[:, None] / np.maximum(lags, 1e-12))
-    for k in range(len(fine) - 1):
-        states[k + 1] = orders[k] + kept[k] * (states[k] - orders[k])
-    means = states.copy()
-    means[:-1] = 0.5 * (states[1:] + states[:-1])
-    return fine, np.ascontiguousarray(np.where(lags > 0.0, means, orders))
+    found = orders.copy()
+    for lag in np.unique(lags[lags > 0.0]):
+        own = lags == lag
+        # x[k + 1] - kept[k] x[k] = (1 - kept[k]) orders[k], as bands of a matrix
+        kept = np.exp(-np.diff(fine) / lag)
+        bands = np.vstack([np.ones(len(fine)), np.append(-kept, 0.0)])
+        right = np.vstack([orders[:1, own], (1.0 - kept)[:, None] * orders[:-1, own]])
+        states = solve_banded((1, 0), bands, right)
+        found[:-1, own] = 0.5 * (states[1:] + states[:-1])
+        found[-1, own] = states[-1]
+    return fine, np.ascontiguousarray(found)
 
 
 def _one_later(times: Array, values: Array, column: int, delay: float) -> tuple[Array, Array]:

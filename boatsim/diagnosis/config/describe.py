@@ -26,7 +26,7 @@ class DescribeConfig:
         low=0,
     )
     budget: int = setting(
-        400_000_000,
+        500_000_000,
         "steps x dof",
         "Work of the description, counted as in `select.budget`; then no further term is sought. "
         "It takes about a minute, and gets less where `work.total` leaves less.",

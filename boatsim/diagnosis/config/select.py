@@ -31,20 +31,20 @@ class SelectConfig:
         low=1,
     )
     budget: int = setting(
-        900_000_000,
+        2_500_000_000,
         "steps x dof",
         "Work of the search: integration steps in every pass of the filter, times degrees of "
-        "freedom, and what takes as long as these. 900 million take about 2 minutes; then the "
-        "step that has begun and the removal of effects are completed, which takes another "
-        "minute, and the search reports what it has not tried. It gets less where `work.total` "
-        "leaves less.",
+        "freedom, and what takes as long as these. 2,500 million take 4 to 5 minutes on a slow "
+        "processor; then the step that has begun and the removal of effects are completed, which "
+        "takes another minute, and the search reports what it has not tried. It gets less where "
+        "`work.total` leaves less.",
         low=1,
     )
     last_budget: int = setting(
-        450_000_000,
+        600_000_000,
         "steps x dof",
-        "Work of the second search, in which candidates that are tried last take part. Half of "
-        "`budget`, because most candidates have been tried before.",
+        "Work of the second search, in which candidates that are tried last take part. A quarter "
+        "of `budget`, because most candidates have been tried before.",
         low=1,
     )
     last_share: float = setting(
@@ -52,8 +52,8 @@ class SelectConfig:
         "1",
         "Share of the evidence that the selected effects gain, which a candidate that is tried "
         "last must gain alone, where the first search ended at its budget: the second one has "
-        "half of its work, and cannot reach as much otherwise. A tenth, because a rough fit may "
-        "miss most of what a candidate gains.",
+        "a quarter of its work, and cannot reach as much otherwise. A tenth, because a rough fit "
+        "may miss most of what a candidate gains.",
         0.0,
         1.0,
     )
@@ -65,9 +65,9 @@ class SelectConfig:
         low=0.0,
     )
     thorough_work: int = setting(
-        150_000_000,
+        175_000_000,
         "steps x dof",
-        "Work of the search, about 20 seconds, after which it saves work. Recordings of a minute "
+        "Work of the search, about 15 seconds, after which it saves work. Recordings of a minute "
         "and a half need less.",
         low=0,
     )

@@ -20,15 +20,15 @@ class SimulateConfig:
         0.1, "nats", "A smaller gain ends a fit; parameters then move by a fraction of their sd."
     )
     budget: int = setting(
-        1_300_000_000,
+        2_000_000_000,
         "steps x dof",
         "Work of the fits to free runs, counted as in `select.budget`; then no further effect is "
-        "dropped or added. 1,300 million take 2 to 3 minutes. They get less where `work.total` "
-        "leaves less.",
+        "dropped or added. 2,000 million take 3 to 4 minutes on a slow processor. They get less "
+        "where `work.total` leaves less.",
         low=1,
     )
     unsure_budget: int = setting(
-        500_000_000,
+        600_000_000,
         "steps x dof",
         "Work of the search without those stated effects that are only probably causes. It takes "
         "about a minute of CPU.",

@@ -1,7 +1,7 @@
 """The budget of a search: a limit of its work, and what was not tried after it was spent.
 
 The work is counted in integration steps times degrees of freedom: a pass of the filter with 1,000
-steps of a vessel in surge, sway and yaw counts 3,000, and more where it computes covariances. The
+steps of a vessel in surge, sway and yaw counts 3,000, and more with actuators and covariances. The
 count never depends on the speed of the machine, so that a diagnosis of the same recordings with the
 same settings gives the same answer everywhere.
 

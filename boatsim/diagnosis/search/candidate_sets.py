@@ -78,6 +78,7 @@ class CandidateSets:
         # results of `add_further_effects` by the names of a set and of the candidates then banned
         self.further: dict[tuple[Set, Set], Fit | None] = {}
         self.further_work = 0  # that `add_further_effects` has done [steps x dof]
+        self.screening_work = 0  # of the screening of all candidates [steps x dof]
         # effects without which held-out recordings are predicted worse, as free runs show
         self.supported: set[str] = set()
         # log likelihoods of recordings that are held out, by the identities of these and of the fit
@@ -301,7 +302,10 @@ class CandidateSets:
             self._screen_lazily(best, rest, floor)
         elif rest:
             report = self._report_screening if len(self.screenings) == 1 else None
+            before = self.budget.used_work
             known |= screen(self.problem, best, rest, report, self._linearised(best))
+            if len(rest) == len(self.candidates):
+                self.screening_work = self.budget.used_work - before
         allowed = self._unrefuted_fits(known)
         least = best.evidence + self.required_gain
         if not among and all(f.evidence < least for f in allowed.values()):

@@ -96,9 +96,13 @@ def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -
     """Yield converged fits with one more effect, for the candidates that promise most.
 
     `order` names the candidates, none for all; it is replaced by their order. A search that saves
-    work does not refine fits whose evidence is not above `least`.
+    work does not refine fits whose evidence is not above `least`. Where the budget is spent, or
+    does not suffice for all candidates, the rest is not fitted.
     """
     problem = sets.problem
+    if not order and sets.budget.remaining_work < sets.screening_work:
+        sets.budget.record_skipped_attempt(NOT_SOUGHT)
+        return
     calm = sets.gauss_newton_steps_at_assumed_disturbance(best)
     if not np.isfinite(calm.evidence):
         return
@@ -110,6 +114,9 @@ def _additions(sets: CandidateSets, best: Fit, order: list[str], least: float) -
     screened = screen(problem, calm, names)
     order[:] = sorted(names, key=lambda name: -screened[name].evidence)
     for name in _best_of_each_kind(sets, order)[: sets.config.select.further_fits]:
+        if sets.budget.is_spent:
+            sets.budget.record_skipped_attempt(NOT_SOUGHT)
+            return
         start = sets.gauss_newton_steps_at_assumed_disturbance(screened[name])
         if np.isfinite(start.evidence) and sets.skips_thorough_search:
             start = fit(problem, start)

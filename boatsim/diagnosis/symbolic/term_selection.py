@@ -61,9 +61,10 @@ def select_terms(
 ) -> Formula:
     """Build a formula for an unexplained force: add symbolic terms one by one, by evidence.
 
-    The selection ends when no term gains enough evidence, or when its budget of work is spent. If
-    it is spent from the start, the best term by approximate evidence is the only one, with the
-    constants of the grammar, and no effect is removed for it.
+    The selection ends when no term gains enough evidence, or when its budget of work does not
+    suffice for as much work as the term before took. If the budget is spent from the start, the
+    best term by approximate evidence is the only one, with the constants of the grammar, and no
+    effect is removed for it.
 
     Args:
         problem: The estimation problem.
@@ -81,9 +82,11 @@ def select_terms(
     everywhere, refused = [*problem.recordings, *held_out], set[Family]()
     if budget.is_spent:
         return _first_term(formula, everywhere)
+    work_of_term = 0
     while len(formula.terms) < config.describe.most_terms:
-        if formula.terms and budget.is_spent:
+        if formula.terms and budget.remaining_work <= work_of_term:
             return replace(formula, complete=False)
+        before = budget.used_work
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
         extensions = _extensions(formula, ordered, refused, everywhere)
         if not extensions:
@@ -105,7 +108,9 @@ def select_terms(
             refused.add(term_family(extension.scored.term))
             continue
         formula = _pruned(extended, fewer)
-        ends = budget.is_spent and len(formula.terms) < config.describe.most_terms
+        work_of_term = budget.used_work - before
+        ends = budget.remaining_work <= work_of_term
+        ends = ends and len(formula.terms) < config.describe.most_terms
         if len(formula.terms) > 1 and not ends:
             formula = _refine_all(formula, everywhere)
         count, gain = len(formula.terms), found.evidence - best.evidence

@@ -34,7 +34,8 @@ def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     thrust = t.gain * s.thrust
-    about = (q.where == 0.0 or q.where * t.y > 0.0) and q.way * thrust >= 0.0
+    on_side = q.where == 0.0 or q.where * t.y > 0.0
+    about = thrust != 0.0 and on_side and q.way * thrust >= 0.0
     return thrust_wrench_at_mount(
         q.coefficient * terms.term_value(m, q, act, at, own) * thrust if about else 0.0, s, t
     )

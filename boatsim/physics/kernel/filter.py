@@ -625,43 +625,51 @@ def simulate_intervals(
     ends: Any,
     states: Array,
     out: Array,
-) -> None:
+) -> float:
     """Simulate intervals of a recording from given states, under the recorded commands.
 
     Run j extends from row starts[j] to row ends[j] and begins at states[j] (2 NQ,). The actuators
     are simulated from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with
     every channel as the recording would show it. States of all rows of the recording may follow
     those of the runs: from them effects remember the motion before a run; else it is rest.
+    Returns the number of integration steps.
     """
     times, (body, p, on) = inputs.times, model
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
     compute_mass_constants(body, p, on, k)
     settle_actuators(inputs.commands[0], memory, p, on, act)
-    y, delay, last = np.zeros(NY), motion_latency(p, on), np.int64(0)
+    y, delay, at_start = np.zeros(NY), motion_latency(p, on), np.zeros(MEMORY)
     laws, plant = LawArguments(p, on, k), VesselState(y, memory, act, np.zeros(NQ))
-    saved, rows = np.zeros((len(starts), MEMORY)), np.zeros(len(starts), dtype=np.int64)
-    # Before the runs begin, the actuators alone are advanced, unless effects remember the motion.
     path = np.int64(len(starts))  # index of the state of the first row
     moves = HAS_ADVANCE_MOTION_MEMORY and len(states) > path
-    final = np.int64(0)
+    # `memory` is that of row `known`, at which the last row of commands used so far is `last`
+    known, last, total = np.int64(0), np.int64(0), 0.0
     for run in range(len(starts)):
-        final = max(final, starts[run])
-    for i in range(final + 1):
-        if i > 0:
+        start, end = starts[run], ends[run]
+        if start < known:
+            for j in range(MEMORY):
+                memory[j] = 0.0
+            settle_actuators(inputs.commands[0], memory, p, on, act)
+            known, last = np.int64(0), np.int64(0)
+        for i in range(known + 1, start + 1):
             for j in range(NY):
                 y[j] = states[path + i - 1, j] if moves else 0.0
-            last, _ = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
-        for run in range(len(starts)):
-            if starts[run] == i:
-                copy_vector(memory, saved[run])
-                rows[run] = last
-    for run in range(len(starts)):
+            last, steps = predict_motion(inputs, i, delay, last, max_step, laws, plant, moves)
+            total += steps
+        copy_vector(memory, at_start)
+        known, last_at_start = start, last
         copy_vector(states[run], y)
-        copy_vector(saved[run], memory)
-        last = rows[run]
-        for i in range(starts[run], ends[run] + 1):
-            if i > starts[run]:
-                last, _ = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
+        for i in range(start, end + 1):
+            if i > start:
+                last, steps = predict_motion(inputs, i, delay, last, max_step, laws, plant, True)
+                total += steps
             for code in range(NY):
                 t = times[i] - times[0]
                 out[run, i, code] = predicted_measurement(y, t, code, p, on)
+        # After the run the actuators are where they would be without it; other memory is not.
+        if HAS_ADVANCE_MOTION_MEMORY or (run + 1 < len(starts) and starts[run + 1] < end):
+            copy_vector(at_start, memory)
+            last = last_at_start
+        else:
+            known = end
+    return total

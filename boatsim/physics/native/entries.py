@@ -96,7 +96,7 @@ ESTIMATION: Mapping[str, Entry] = {
         (records.FilterHistory, CUBE, VECTOR, records.LatentForce, VECTOR, VECTOR)
     ),
     "simulate_intervals": Entry(
-        (records.Inputs, REAL, records.VesselNumbers, ROWS, ROWS, MATRIX, CUBE)
+        (records.Inputs, REAL, records.VesselNumbers, ROWS, ROWS, MATRIX, CUBE), float
     ),
 }
 LIBRARIES = ("simulation", "recording", "estimation")

@@ -1,5 +1,6 @@
 """Integration step of the free runs to which parameters are fitted."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,9 +21,9 @@ TURN = 0.3  # rad, rudder of a zig-zag
 PERIOD = 20.0  # s, between two orders
 
 
-def zigzag(boat: Vessel) -> MappedRecording:
+def zigzag(boat: Vessel, phase: float = 0.1) -> MappedRecording:
     """A minute of rudder orders to either side; the recorded poses play no role."""
-    steer = TURN * np.sign(np.sin(np.pi * MINUTE / PERIOD + 0.1))
+    steer = TURN * np.sign(np.sin(np.pi * MINUTE / PERIOD + phase))
     signals = dict.fromkeys(("x_m", "y_m", "psi_rad"), np.zeros(len(MINUTE)))
     for name in boat.commands:
         signals[name] = steer if "rad" in name else np.full(len(MINUTE), 10.0)
@@ -30,15 +31,22 @@ def zigzag(boat: Vessel) -> MappedRecording:
     return map_recording(recording, Program(boat))
 
 
+def runs(
+    mapped: MappedRecording, rows: Sequence[tuple[int, int]], speed: float, step: float | None
+) -> list[Array]:
+    """Simulated channels (M, 2 NQ) between first and last rows, from a speed ahead [m/s]."""
+    nq = mapped.program.module.NQ
+    states = np.zeros((len(rows), 2 * nq))
+    states[:, nq] = speed
+    first, last = np.array(rows).T.copy()
+    begin = FreeRunStarts(first, last, states, (), states[:0])
+    on = mapped.program.effect_switches(())
+    return [channels for _, channels in mapped.simulate_from(mapped.values, on, begin, step)]
+
+
 def path(mapped: MappedRecording, speed: float, step: float | None) -> Array:
     """Simulated channels (M, 2 NQ) of the whole recording from a speed ahead [m/s]."""
-    nq = mapped.program.module.NQ
-    states = np.zeros((1, 2 * nq))
-    states[0, nq] = speed
-    ends = np.array([len(MINUTE) - 1])
-    begin = FreeRunStarts(np.array([0]), ends, states, (), states[:0])
-    on = mapped.program.effect_switches(())
-    return mapped.simulate_from(mapped.values, on, begin, step)[0][1]
+    return runs(mapped, [(0, len(MINUTE) - 1)], speed, step)[0]
 
 
 @pytest.mark.parametrize("name", ["kvlcc2", "mariner"])
@@ -65,6 +73,41 @@ def test_a_long_hull_follows_the_same_path_with_the_longer_step(name: str, speed
     scale = np.array([mapped.program.vessel.length, mapped.program.vessel.length, 1.0])
     assert np.ptp(exact[:, 2]) > 0.1  # it turns
     assert np.abs((found - exact)[:, :3] / scale).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [(0, 20), (20, 41), (41, 80)],  # one after another
+        [(3, 20), (31, 50)],  # with a gap
+        [(5, 40), (10, 45), (20, 60)],  # overlapping
+        [(50, 70), (0, 30), (30, 40)],  # in another order
+    ],
+)
+def test_each_of_several_runs_is_the_one_that_is_simulated_alone(
+    rows: list[tuple[int, int]],
+) -> None:
+    # the rudder follows its orders slowly, and with play; the first order is amidships
+    mapped = zigzag(
+        load_vessel("mariner").with_effect({"use": "steering_backlash", "width": 0.1}), 0.0
+    )
+    for one, channels in zip(rows, runs(mapped, rows, 7.7, None), strict=True):
+        (alone,) = runs(mapped, [one], 7.7, None)
+        assert len(alone) == one[1] - one[0] + 1 and (channels == alone).all()
+
+
+def test_runs_one_after_another_cost_as_much_work_as_one() -> None:
+    mapped = zigzag(load_vessel("mariner"))
+
+    def work(rows: list[tuple[int, int]]) -> int:
+        before = mapped.filtered.work
+        runs(mapped, rows, 7.7, None)
+        return mapped.filtered.work - before
+
+    whole = work([(0, 80)])
+    assert work([(0, 20), (20, 41), (41, 80)]) == whole
+    # before a run that begins later, its actuators are simulated from the first row on
+    assert work([(41, 80)]) == whole
 
 
 def test_the_work_of_a_fit_falls_with_its_step() -> None:

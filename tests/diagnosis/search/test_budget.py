@@ -24,7 +24,7 @@ from boatsim.diagnosis.search import ranking as ranking_stage
 from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_addition_to_phrase
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
-from boatsim.diagnosis.work import CALL, CORRECTION, WorkCount
+from boatsim.diagnosis.work import ACTUATOR, CALL, CORRECTION, WorkCount
 from boatsim.recordings.table import write_csv
 
 FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
@@ -68,8 +68,9 @@ def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
         intervals = np.diff(mapped.times)
         steps = sum(max(1, math.ceil(h / mapped.largest_step - 1e-9)) for h in intervals)
         rows, channels = mapped.measured.shape
-        corrections = CORRECTION * rows * dof * (dof + channels) / 2
-        work += CALL + round(steps * dof + corrections)
+        size = dof + ACTUATOR * mapped.commands.shape[1]
+        corrections = CORRECTION * rows * size * (dof + channels) / 2
+        work += CALL + round(steps * size + corrections)
     assert problem.work_count.work == before + work
 
 

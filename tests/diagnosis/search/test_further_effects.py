@@ -8,8 +8,9 @@ from pushed_boat import BOAT, laid, sail
 
 from boatsim.diagnosis.candidates import candidate_library
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.budget import SearchBudget
 from boatsim.diagnosis.search.candidate_sets import CandidateSets
-from boatsim.diagnosis.search.further_effects import add_further_effects
+from boatsim.diagnosis.search.further_effects import NOT_SOUGHT, add_further_effects
 from boatsim.diagnosis.search.pruning import differs_from_zero
 from boatsim.physics.base import Array
 
@@ -90,3 +91,15 @@ def test_a_combination_that_the_recordings_determine_differs_from_zero(
     found = replace(base, effects=("camera_scale",), free=free, theta=theta, covariance=covariance)
     sets = CandidateSets(problem, ("camera_scale",), base)
     assert differs_from_zero(sets, found, "camera_scale") is expected
+
+
+def test_candidates_are_not_screened_again_with_less_work_than_that_takes(windy: Laid) -> None:
+    problem, base = windy
+    sets = CandidateSets(problem, ("wind", "thrust_lag", "extra_mass", "steering_offset"), base)
+    sets.screen_candidates(base)
+    assert sets.screening_work > 0
+    sets.budget = SearchBudget(problem.work_count, sets.screening_work // 2)
+    before = problem.work_count.work
+    assert add_further_effects(sets, base) is None
+    assert problem.work_count.work - before < sets.screening_work
+    assert NOT_SOUGHT in sets.budget.skipped_work_statements

@@ -55,3 +55,22 @@ def test_a_description_ends_where_nothing_of_the_work_of_the_diagnosis_is_left_t
     limited = replace(problem, config=replace(DEFAULT, work=spent))
     found = select_terms(limited, best, ())
     assert len(found.terms) == 1 and not found.complete
+
+
+@pytest.mark.slow
+def test_no_term_is_begun_that_would_take_more_work_than_is_left(
+    mapped: tuple[Problem, Fit],
+) -> None:
+    problem, best = mapped
+
+    def described(**settings: int) -> tuple[int, int, bool]:
+        """Number of terms, work, and whether the description is complete."""
+        config = replace(DEFAULT, describe=replace(DEFAULT.describe, **settings))
+        before = problem.work_count.work
+        found = select_terms(replace(problem, config=config), best, ())
+        return len(found.terms), problem.work_count.work - before, found.complete
+
+    terms, work_of_one, _ = described(most_terms=1)
+    assert terms == 1
+    terms, work, complete = described(budget=round(1.5 * work_of_one))
+    assert terms == 1 and not complete and work < 1.5 * work_of_one
