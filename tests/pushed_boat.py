@@ -2,12 +2,14 @@
 on its filter."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import candidate_library
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.prior_noise import prior_noise_levels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.recording_mapping import map_recording
@@ -18,6 +20,7 @@ from boatsim.physics.program import Program
 from boatsim.recordings.table import Notes, Recording
 
 BOAT = vessel.load_vessel("trial_boat")
+FEW_ROWS = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))  # for quick diagnoses
 M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # kg, kg m^2
 DAMPING, X_MOTOR, Y_MOTOR = np.array([3.0, 10.0, 1.0]), -0.6, 0.19
 RATE, ROWS = 6.0, 240

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from pushed_boat import BOAT, laid, sail, weak_astern
+from pushed_boat import FEW_ROWS, laid, sail, weak_astern
 
-from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.config.work import WorkConfig
-from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.open_set.decision import Decision
 from boatsim.diagnosis.pipeline import Selection
 from boatsim.diagnosis.problem import Problem
@@ -20,16 +20,6 @@ from boatsim.diagnosis.stage_budgets import (
     simulation_budget,
     unsure_budget,
 )
-from boatsim.recordings.table import write_csv
-
-FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
-
-
-@pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
-    path = tmp_path_factory.mktemp("stage_budgets") / "run.csv"
-    write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 @pytest.fixture(scope="module")
@@ -85,10 +75,10 @@ def test_the_default_shares_leave_work_to_each_stage() -> None:
 
 
 def test_the_work_of_earlier_problems_counts(loaded: LoadedRecordings) -> None:
-    question = set_up_estimation_problem(loaded, FAST)
+    question = set_up_estimation_problem(loaded, FEW_ROWS)
     pipeline.fit_baseline_models(question)
     done = question.problem.work_count.work
-    again = set_up_estimation_problem(loaded, FAST, question.problem.work_count)
+    again = set_up_estimation_problem(loaded, FEW_ROWS, question.problem.work_count)
     assert done > 0
     assert again.problem.work_count is question.problem.work_count
     assert again.problem.work_count.work >= done
@@ -100,7 +90,7 @@ class Searched(Exception):
 
 @pytest.fixture(scope="module")
 def question(loaded: LoadedRecordings) -> Question:
-    return replace(set_up_estimation_problem(loaded, FAST), candidates=("weak_reverse",))
+    return replace(set_up_estimation_problem(loaded, FEW_ROWS), candidates=("weak_reverse",))
 
 
 @pytest.fixture(scope="module")
@@ -140,8 +130,8 @@ def test_the_second_search_begins_only_where_it_can_reach_as_much(
 
     monkeypatch.setattr(pipeline, "largest_gain_on_top", lambda *_: share * gained)
     monkeypatch.setattr(pipeline, "select_candidates", search)
-    select = replace(FAST.select, last_gain=5.0)
-    config: DiagnosisConfig = replace(FAST, work=work, select=select)
+    select = replace(FEW_ROWS.select, last_gain=5.0)
+    config: DiagnosisConfig = replace(FEW_ROWS, work=work, select=select)
     asked = replace(question, problem=replace(question.problem, config=config))
     first = replace(decision, ranking=ranking)
     if searches:

@@ -5,34 +5,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pushed_boat import BOAT, sail, weak_astern
+from pushed_boat import BOAT, FEW_ROWS
 
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.answer.compose import compose_answer
 from boatsim.diagnosis.answer.stages import Stages
-from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings, Request
 from boatsim.diagnosis.model_names import MODELS
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.sentences import console_lines
 from boatsim.diagnosis.search.ranking import Baseline
 from boatsim.errors import BadInput
-from boatsim.recordings.table import write_csv
 
 ONLY = "weak_reverse"  # the candidate that is tested
-FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
-
-
-@pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
-    path = tmp_path_factory.mktemp("stages") / "run.csv"
-    write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
 
 
 @pytest.fixture(scope="module")
 def question(loaded: LoadedRecordings) -> Question:
-    return replace(set_up_estimation_problem(loaded, FAST), candidates=(ONLY,))
+    return replace(set_up_estimation_problem(loaded, FEW_ROWS), candidates=(ONLY,))
 
 
 @pytest.fixture(scope="module")
@@ -128,7 +118,7 @@ def test_a_late_stage_that_fails_is_reported_and_the_selection_is_kept(
 
     monkeypatch.setattr(pipeline, "set_up_estimation_problem", lambda *_: question)
     monkeypatch.setattr(pipeline, stage, fail)
-    found = pipeline.diagnose_loaded(loaded, config=FAST)
+    found = pipeline.diagnose_loaded(loaded, config=FEW_ROWS)
     answer = found.findings.answer
     assert [effect["name"] for effect in answer["effects"]] == [ONLY]
     assert "diverges" not in answer["unknown"]
@@ -146,7 +136,7 @@ def test_a_validation_that_fails_states_its_reason(
 
     monkeypatch.setattr(pipeline, "set_up_estimation_problem", lambda *_: question)
     monkeypatch.setattr(pipeline, "validate_on_held_out", fail)
-    answer = pipeline.diagnose_loaded(loaded, config=FAST).findings.answer
+    answer = pipeline.diagnose_loaded(loaded, config=FEW_ROWS).findings.answer
     assert answer["verdict"] == "unknown"
     assert answer["sentence"].endswith(
         "The validation of the selected effects failed and was skipped: overflow."

@@ -20,10 +20,10 @@ class SimulateConfig:
         0.1, "nats", "A smaller gain ends a fit; parameters then move by a fraction of their sd."
     )
     budget: int = setting(
-        2_000_000_000,
+        2_600_000_000,
         "steps x dof",
         "Work of the fits to free runs, counted as in `select.budget`; then no further effect is "
-        "dropped or added. 2,000 million take 3 to 4 minutes on a slow processor. They get less "
+        "dropped or added. 2,600 million take 3 to 4 minutes on a slow processor. They get less "
         "where `work.total` leaves less.",
         low=1,
     )

@@ -14,9 +14,9 @@ class WorkConfig:
     """
 
     total: int = setting(
-        5_000_000_000,
+        6_500_000_000,
         "steps x dof",
-        "Work of a whole diagnosis. It takes 7 to 10 minutes of CPU on a slow processor. Each long "
+        "Work of a whole diagnosis. It takes 8 to 10 minutes of CPU on a slow processor. Each long "
         "stage then ends early and states what it has not tried.",
         low=1,
     )
@@ -28,7 +28,7 @@ class WorkConfig:
         low=0,
     )
     for_simulations: int = setting(
-        1_300_000_000,
+        2_300_000_000,
         "steps x dof",
         "Work that the searches and the description leave to the fit to free runs, which decides "
         "how well the corrected vessel predicts.",

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pushed_boat import BOAT, sail, weak_astern
+from pushed_boat import FEW_ROWS
 
-from boatsim.diagnosis import loading, pipeline
+from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.answer.incomplete import (
     COMPARED,
     INCOMPLETE,
@@ -15,8 +15,8 @@ from boatsim.diagnosis.answer.incomplete import (
     TIME_NOT_CHOSEN,
     incomplete_sentence,
 )
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.loading import LoadedRecordings, Request
+from boatsim.diagnosis.config import DiagnosisConfig
+from boatsim.diagnosis.loading import LoadedRecordings
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.question import Question, set_up_estimation_problem
 from boatsim.diagnosis.report.sentences import console_lines
@@ -25,21 +25,12 @@ from boatsim.diagnosis.search.budget import BudgetSpentError, SearchBudget, in_a
 from boatsim.diagnosis.search.candidate_sets import CandidateSets, Recordings
 from boatsim.diagnosis.search.ranking import select_and_rank_candidates
 from boatsim.diagnosis.work import ACTUATOR, CALL, CORRECTION, WorkCount
-from boatsim.recordings.table import write_csv
 
-FAST = replace(DEFAULT, load=replace(DEFAULT.load, row_rate=4.0))
 CANDIDATES = ("weak_reverse", "steady_force", "thrust_lag", "wave_forcing")
 
 
-@pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> LoadedRecordings:
-    path = tmp_path_factory.mktemp("budget") / "run.csv"
-    write_csv(sail("run", 7, weak_astern)[0], path)
-    return loading.load_recordings(Request([path], vessel=BOAT.name), config=FAST)
-
-
 def with_budget(work: int) -> DiagnosisConfig:
-    return replace(FAST, select=replace(FAST.select, budget=work))
+    return replace(FEW_ROWS, select=replace(FEW_ROWS.select, budget=work))
 
 
 def question_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> Question:
@@ -55,7 +46,7 @@ def selection_with(loaded: LoadedRecordings, config: DiagnosisConfig) -> pipelin
 def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
     loaded: LoadedRecordings,
 ) -> None:
-    problem = question_with(loaded, FAST).problem
+    problem = question_with(loaded, FEW_ROWS).problem
     found = problem.nominal_hypothesis()
     on = problem.program.effect_switches()
     passes = problem.filter(found.free, found.theta, on, found.levels)
@@ -75,13 +66,13 @@ def test_a_pass_counts_its_integration_steps_and_a_repeated_one_nothing(
 
 
 def test_all_recordings_of_a_diagnosis_share_one_count(loaded: LoadedRecordings) -> None:
-    question = question_with(loaded, FAST)
+    question = question_with(loaded, FEW_ROWS)
     counts = [mapped.filtered for mapped in (*question.problem.recordings, *question.held_out)]
     assert all(count is question.problem.work_count for count in counts)
 
 
 def test_the_default_budget_skips_nothing(loaded: LoadedRecordings) -> None:
-    ranking = selection_with(loaded, FAST).ranking
+    ranking = selection_with(loaded, FEW_ROWS).ranking
     assert not ranking.skipped
     assert [one.name for one in ranking.named] == ["weak_reverse"]
 
@@ -97,7 +88,7 @@ def test_a_search_without_budget_adds_nothing_and_states_what_it_skipped(
 
 
 def test_a_selection_may_get_less_work_than_the_budget(loaded: LoadedRecordings) -> None:
-    question = question_with(loaded, FAST)
+    question = question_with(loaded, FEW_ROWS)
     base = pipeline.fit_baseline_models(question)
     ranking = pipeline.select_candidates(question, base, loaded, work=1).ranking
     assert not ranking.best.effects
@@ -107,7 +98,7 @@ def test_a_selection_may_get_less_work_than_the_budget(loaded: LoadedRecordings)
 def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(
     loaded: LoadedRecordings,
 ) -> None:
-    question = question_with(loaded, FAST)
+    question = question_with(loaded, FEW_ROWS)
     base = pipeline.fit_baseline_models(question)
     before = question.problem.work_count.work
     complete = pipeline.select_candidates(question, base, loaded).ranking
@@ -123,7 +114,7 @@ def test_a_budget_that_ends_the_search_halfway_keeps_the_best_set_found(
 def test_a_search_without_budget_removes_no_effect_in_whose_place_nothing_can_come(
     loaded: LoadedRecordings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    question = question_with(loaded, FAST)
+    question = question_with(loaded, FEW_ROWS)
     base = pipeline.fit_baseline_models(question)
     found = pipeline.select_candidates(question, base, loaded).ranking
     asked = list[Fit]()
@@ -171,8 +162,8 @@ def test_the_answer_says_that_candidates_were_not_compared_only_where_that_is_so
 def test_a_diagnosis_without_work_for_a_second_search_has_compared_all_candidates(
     loaded: LoadedRecordings,
 ) -> None:
-    select = replace(FAST.select, again_share=1e9)
-    found = pipeline.diagnose_loaded(loaded, config=replace(FAST, select=select))
+    select = replace(FEW_ROWS.select, again_share=1e9)
+    found = pipeline.diagnose_loaded(loaded, config=replace(FEW_ROWS, select=select))
     answer = found.findings.answer
     assert answer["skipped"] == [TIME_NOT_CHOSEN]
     assert answer["sentence"].endswith(f"{COMPARED} {TIME_NOT_CHOSEN}.")
