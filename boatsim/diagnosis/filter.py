@@ -30,7 +30,12 @@ from boatsim.diagnosis.work import (
     RecordingSize,
     WorkCount,
 )
-from boatsim.physics.base import DriftingMeasurement, MotionMemory, RandomForce
+from boatsim.physics.base import (
+    DriftingMeasurement,
+    FilteredSignal,
+    MotionMemory,
+    RandomForce,
+)
 from boatsim.physics.kernel.records import (
     FilterHistory,
     InitialState,
@@ -409,7 +414,9 @@ class MappedRecording:
     @cached_property
     def _size(self) -> RecordingSize:
         rows, channels = self.measured.shape
-        return RecordingSize(rows, channels, self.program.module.NQ, self.commands.shape[1])
+        filters = sum(isinstance(effect, FilteredSignal) for effect in self.program.effects)
+        dof, actuators = self.program.module.NQ, self.commands.shape[1]
+        return RecordingSize(rows, channels, dof, actuators, filters)
 
     def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
         """Return the smoothed states of the recording (Rauch-Tung-Striebel smoother).

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 # of passes and free runs over the recordings of a boat, a ferry, a ship, a hovercraft and a ship
 # section, with which the time of a unit differs by a factor of 1.5; SMOOTHER and SCORING are rough.
 ACTUATOR = 0.25  # degrees of freedom that cost as much as an actuator
+FILTER = 0.5  # the same for an effect that filters an input, such as a measured wave
 # Work per row, degree of freedom, and mean of the numbers of degrees of freedom and channels:
 CORRECTION = 1.0  # corrections of the state by the recorded signals, with known gains
 COVARIANCE = 0.8  # covariances of the filter, which give its gains
@@ -25,18 +26,20 @@ class RecordingSize:
         rows: Number of rows.
         channels: Number of recorded signals.
         dof: Number of degrees of freedom.
-        actuators: Number of commands.
+        actuators: Number of commands and other inputs.
+        filters: Number of effects that filter an input.
     """
 
     rows: int
     channels: int
     dof: int
     actuators: int
+    filters: int
 
     @property
     def work_of_step(self) -> float:
         """Work of an integration step."""
-        return self.dof + ACTUATOR * self.actuators
+        return self.dof + ACTUATOR * self.actuators + FILTER * self.filters
 
     @property
     def work_of_rows(self) -> float:

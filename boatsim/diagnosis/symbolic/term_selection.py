@@ -84,7 +84,7 @@ def select_terms(
         return _first_term(formula, everywhere)
     work_of_term = 0
     while len(formula.terms) < config.describe.most_terms:
-        if formula.terms and budget.remaining_work <= work_of_term:
+        if budget.remaining_work <= work_of_term:
             return replace(formula, complete=False)
         before = budget.used_work
         ordered = _score_all(problem, fitted_recordings(problem, formula.fit))
@@ -106,6 +106,7 @@ def select_terms(
         fewer: dict[str, Formula] = {}
         if _replaces_effect(formula, extended, fewer):
             refused.add(term_family(extension.scored.term))
+            work_of_term = budget.used_work - before
             continue
         formula = _pruned(extended, fewer)
         work_of_term = budget.used_work - before
