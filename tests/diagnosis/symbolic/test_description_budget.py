@@ -8,8 +8,9 @@ from pushed_boat import laid, sail
 
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.symbolic import term_selection
 from boatsim.diagnosis.symbolic.placeholders import set_placeholder_term
-from boatsim.diagnosis.symbolic.term_selection import select_terms
+from boatsim.diagnosis.symbolic.term_selection import Formula, select_terms
 from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
 
@@ -74,3 +75,19 @@ def test_no_term_is_begun_that_would_take_more_work_than_is_left(
     assert terms == 1
     terms, work, complete = described(budget=round(1.5 * work_of_one))
     assert terms == 1 and not complete and work < 1.5 * work_of_one
+
+
+def test_terms_that_only_replace_effects_are_not_sought_without_end(
+    mapped: tuple[Problem, Fit], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, best = mapped
+    refused = list[str]()
+
+    def replaces_effect(before: Formula, extended: Formula, fewer: dict[str, Formula]) -> bool:
+        refused.extend(extended.terms)
+        return True
+
+    monkeypatch.setattr(term_selection, "_replaces_effect", replaces_effect)
+    config = replace(DEFAULT, describe=replace(DEFAULT.describe, budget=1))
+    found = select_terms(replace(problem, config=config), best, ())
+    assert len(refused) == 1 and not found.terms and not found.complete
