@@ -63,7 +63,7 @@ class SimulateConfig:
     )
     followed_steps: int = setting(2, "count", "Gauss-Newton steps of a rough fit.", low=1)
     pair_budget: int = setting(
-        400_000_000,
+        800_000_000,
         "steps x dof",
         "Work of the search for a spring to the ground together with the force that it balances; "
         "then no further pair is tried. It takes about a minute of CPU.",
