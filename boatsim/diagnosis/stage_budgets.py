@@ -23,10 +23,14 @@ def search_budget(problem: Problem, most: int | None = None) -> SearchBudget:
 def pair_budget(problem: Problem) -> SearchBudget:
     """Return the budget of the search for a spring and the force that it balances.
 
+    Free runs find both, so that it may use a part of the work that is left to the fit to free runs.
+
     Args:
         problem: The estimation problem, with the count of the work so far.
     """
-    return search_budget(problem, problem.config.simulate.pair_budget)
+    work, most = problem.config.work, problem.config.simulate.pair_budget
+    later = work.for_description + max(work.for_simulations - most, 0)
+    return _budget(problem, most, later)
 
 
 def description_budget(problem: Problem) -> SearchBudget:
