@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 # The constants define the unit of all budgets of work and are no settings. The unit is one
-# integration step of one degree of freedom, 0.1 to 0.2 microseconds. They follow from the CPU times
-# of passes and free runs over the recordings of a boat, a ferry, a ship, a hovercraft and a ship
-# section, with which the time of a unit differs by a factor of 1.5; SMOOTHER and SCORING are rough.
+# integration step of one degree of freedom, about a tenth of a microsecond. They follow from the
+# CPU times of passes and free runs over the recordings of a boat, a ferry, a ship, a hovercraft and
+# a ship section; SMOOTHER, SCORING, ACTUATOR and FILTER are rough.
 ACTUATOR = 0.25  # degrees of freedom that cost as much as an actuator
 FILTER = 0.5  # the same for an effect that filters an input, such as a measured wave
 # Work per row, degree of freedom, and mean of the numbers of degrees of freedom and channels:

@@ -66,7 +66,7 @@ class SimulateConfig:
         800_000_000,
         "steps x dof",
         "Work of the search for a spring to the ground together with the force that it balances; "
-        "then no further pair is tried. It takes about a minute of CPU.",
+        "then no further pair is tried. The best pairs are fitted afterwards, which takes longer.",
         low=1,
     )
     pair_starts: tuple[float, ...] = setting(

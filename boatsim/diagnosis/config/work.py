@@ -16,8 +16,8 @@ class WorkConfig:
     total: int = setting(
         6_500_000_000,
         "steps x dof",
-        "Work of a whole diagnosis. It takes 8 to 10 minutes of CPU on a slow processor. Each long "
-        "stage then ends early and states what it has not tried.",
+        "Work of a whole diagnosis. One that uses it up takes about ten minutes of CPU on a slow "
+        "processor. Each long stage then ends early and states what it has not tried.",
         low=1,
     )
     for_description: int = setting(

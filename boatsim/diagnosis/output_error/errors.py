@@ -133,7 +133,7 @@ class OutputErrors:
                 units = []
                 for own, weight in zip(rows, weights, strict=True):
                     count = max(int(np.isfinite(mapped.measured[own, c]).sum()), 1)
-                    with np.errstate(divide="ignore"):  # a run of weight zero has no errors
+                    with np.errstate(divide="ignore"):  # weight zero: an infinite unit
                         units.append(np.full(len(own), scale * np.sqrt(count / weight)))
                 known = np.isfinite(measured)
                 found.append(RecordedSignal(int(code), measured, known, np.concatenate(units)))
