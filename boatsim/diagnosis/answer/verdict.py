@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from boatsim.diagnosis.answer.described_terms import axis_force_words
 from boatsim.diagnosis.answer.findings import setting_of
 from boatsim.diagnosis.answer.formulas import doubt, is_event, is_stated, states_any
-from boatsim.diagnosis.answer.group_words import group_in_words
 from boatsim.diagnosis.answer.refined_numbers import main_refinement
 from boatsim.diagnosis.answer.schema import (
     AddedEntry,
@@ -182,26 +181,24 @@ def _balanced_effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
 
 def _added(answer: Answer) -> list[str]:
     """Return the statement on effects that only make simulations better."""
-    names = list(map(_added_name, answer.get("added", [])))
-    if not names:
+    found = list(map(_added_words, answer.get("added", [])))
+    if not found:
         return []
     reason = "simulations get better by them, but they are not shown to be causes"
-    if len(names) == 1:
+    if len(found) == 1:
         reason = "simulations get better by it, but it is not shown to be a cause"
-    return [f"for predictions, the corrected vessel also has {join_words(names)}: {reason}"]
+    return [f"for predictions, the corrected vessel also contains {join_words(found)}: {reason}"]
 
 
-def _added_name(entry: AddedEntry) -> str:
-    """Return the name of an added effect in words, with its group, and whether it is at a bound.
+def _added_words(entry: AddedEntry) -> str:
+    """Return what an added effect does, with its group, and whether a number is at a bound.
 
     A value at the bound of its plausible range shows that the effect stands in for something else.
     """
-    name = name_in_words(without_group(entry["name"]))
-    if where := group_in_words(entry):
-        name = f"{name} {where}"
+    words = f"“{effect_description(entry['words'])}”"
     if any(p.get("at_bound") for p in entry["parameters"].values()):
-        name = f"{name} (at the bound of its range)"
-    return name
+        words = f"{words} (at the bound of its range)"
+    return words
 
 
 def reason_none_tested(answer: Answer) -> str:

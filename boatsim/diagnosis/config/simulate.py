@@ -66,7 +66,8 @@ class SimulateConfig:
         800_000_000,
         "steps x dof",
         "Work of the search for a spring to the ground together with the force that it balances; "
-        "then no further pair is tried. The best pairs are fitted afterwards, which takes longer.",
+        "then no further pair is tried. The best pairs are fitted afterwards, by free runs and by "
+        "the Kalman filter.",
         low=1,
     )
     pair_starts: tuple[float, ...] = setting(

@@ -4,16 +4,20 @@ A steady force moves a vessel away unless something holds it, and a spring holds
 force acts. Neither makes simulations better without the other one, so that a search which adds one
 effect at a time finds neither. Both act slowly. A Kalman filter ascribes a slow force to its latent
 force, so that the pair gains little of the evidence that faster forces explain. Therefore free runs
-take part in the decision.
+over whole recordings take part in the decision.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from boatsim.diagnosis.candidates import name_without_prefixes
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, remove_effect
-from boatsim.diagnosis.output_error.search import OutputErrorSearch, with_coefficients_of_file
+from boatsim.diagnosis.output_error.search import (
+    BalancedPair,
+    OutputErrorSearch,
+    with_coefficients_of_file,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import required_gain
 from boatsim.diagnosis.search.pruning import IdentifiedEffect, compare_rivals
@@ -34,12 +38,13 @@ def add_balanced_forces(
 ) -> Ranking:
     """Add a spring to the ground and the force that it balances, where the recordings require both.
 
-    Two criteria must be met. By the evidence of the Kalman filter the pair gains twice what a
-    single effect needs, and each effect of the pair, added to the other one, what it needs. That
+    By the evidence of the Kalman filter the pair must gain twice what a single effect needs. That
     evidence may be small relative to what the other effects explain, so that the pair could only
     correct the shape of their laws (`select.slight_share`). Therefore free runs over the fitted and
     over the held-out recordings must be more probable with the pair, too, and more so than with
-    either effect alone.
+    either effect alone. Each effect of the pair, added to the other one, must gain by the filter
+    and by free runs, and by one of both what a single effect needs: the filter sees little of a
+    slow force, and free runs little of a fast motion.
 
     Args:
         problem: The estimation problem: recordings, vessel model, candidate effects and priors.
@@ -66,16 +71,17 @@ def add_balanced_forces(
     others = [name for name in addable if name not in springs]
     for spring in springs:
         pair = search.most_probable_pair(spring, others)
-        if pair is not None:
-            added = pair.effects[-2:]
-            both = _fit_of_filter(problem, best, pair, added)
-            without = _fits_without_each(problem, both)
-            least = both.evidence - required
-            needed = all(without[name].evidence < least for name in added)
-            if needed and both.evidence > best.evidence + 2.0 * required:
-                named = _statistics(problem, both, without, ranking.named)
-                found = with_further_effects(problem, ranking, both, named, without)
-                return replace(found, balanced=tuple(added))
+        if pair is None:
+            continue
+        both = _fit_of_filter(problem, best, pair)
+        if both.evidence <= best.evidence + 2.0 * required:
+            continue
+        without = _fits_without(problem, both, pair.gains)
+        if _is_each_needed(both, without, pair, required):
+            without |= _fits_without(problem, both, best.effects)
+            named = _statistics(problem, both, without, ranking.named)
+            found = with_further_effects(problem, ranking, both, named, without)
+            return replace(found, balanced=tuple(pair.gains))
     return ranking
 
 
@@ -111,21 +117,39 @@ def _addable_forces(problem: Problem, best: Fit, candidates: Sequence[str]) -> l
     return found
 
 
-def _fit_of_filter(problem: Problem, best: Fit, pair: Fit, added: Sequence[str]) -> Fit:
+def _fit_of_filter(problem: Problem, best: Fit, pair: BalancedPair) -> Fit:
     """The converged fit of the Kalman filter with the pair in addition to the selected effects.
 
     It starts from the sizes of the pair in the free runs.
     """
-    start = best
-    for name in added:
-        sizes = {parameter: x for (effect, parameter), x in pair.values().items() if effect == name}
+    values, start = pair.model.values(), best
+    for name in pair.gains:
+        sizes = {parameter: x for (effect, parameter), x in values.items() if effect == name}
         start = add_effect(problem, start, name, sizes)
     return converge(problem, start)
 
 
-def _fits_without_each(problem: Problem, both: Fit) -> dict[str, Fit]:
-    """Converged fits without one of the effects of a fit, by its name."""
-    return {name: converge(problem, remove_effect(problem, both, name)) for name in both.effects}
+def _fits_without(problem: Problem, both: Fit, names: Iterable[str]) -> dict[str, Fit]:
+    """Converged fits without one of some effects of a fit, by its name."""
+    return {name: converge(problem, remove_effect(problem, both, name)) for name in names}
+
+
+def _is_each_needed(
+    both: Fit, without: Mapping[str, Fit], pair: BalancedPair, required: float
+) -> bool:
+    """Whether each effect of a pair, added to the other one, gains what a single effect needs.
+
+    Args:
+        both: Converged fit of the Kalman filter with the pair.
+        without: Converged fits without one of its effects, by the name of the effect.
+        pair: The pair with its gains by free runs, which are positive.
+        required: What a single effect needs [nats].
+    """
+    for name, in_free_runs in pair.gains.items():
+        in_filter = float(both.evidence - without[name].evidence)
+        if in_filter <= 0.0 or max(in_filter, in_free_runs) < required:
+            return False
+    return True
 
 
 def _statistics(

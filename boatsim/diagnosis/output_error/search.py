@@ -6,8 +6,9 @@ worse. This search drops those, and adds candidates that make simulations better
 recordings; it does not tell causes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,19 @@ from boatsim.diagnosis.search.screening import gain_along, starting_fits
 from boatsim.diagnosis.stage_budgets import simulation_budget
 
 BEFORE, AFTER = "before", "after"
+
+
+class BalancedPair(NamedTuple):
+    """A vessel with two effects that make free runs better together.
+
+    Attributes:
+        model: The vessel with both, fitted to free runs.
+        gains: How much more probable free runs over the fitted recordings are by each effect,
+            added to the other one, by its name [nats].
+    """
+
+    model: Fit
+    gains: Mapping[str, float]
 
 
 class OutputErrorSearch:
@@ -134,7 +148,7 @@ class OutputErrorSearch:
             else:
                 return
 
-    def most_probable_pair(self, first: str, seconds: Sequence[str]) -> Fit | None:
+    def most_probable_pair(self, first: str, seconds: Sequence[str]) -> BalancedPair | None:
         """Return the vessel with one effect and that other one which together gain most.
 
         Rough fits of the first effect with each other one order the pairs; the most probable ones
@@ -149,7 +163,7 @@ class OutputErrorSearch:
             seconds: Names of the others.
 
         Returns:
-            The fitted vessel; None unless free runs gain `simulate.effect_gain` for each effect of
+            The fitted pair; None unless free runs gain `simulate.effect_gain` for each effect of
             the pair over the vessel without it, and those over held-out recordings are more
             probable with the pair and not clearly worse.
         """
@@ -171,11 +185,16 @@ class OutputErrorSearch:
         least = 2.0 * self.config.effect_gain
         if gain < least or self._held_out_gain(pair) <= 0.0 or self.harms(pair):
             return None
-        for single in (first, pair.effects[-1]):
-            alone = self._reweighted_fit(self._rough_fit(self._starts_with(base, single)).model)
-            if self._gain(pair, alone) < self.config.effect_gain:
-                return None
-        return pair
+        second = pair.effects[-1]
+        gains = {first: self._gain_over(second, pair), second: self._gain_over(first, pair)}
+        if min(gains.values()) < self.config.effect_gain:
+            return None
+        return BalancedPair(pair, gains)
+
+    def _gain_over(self, single: str, pair: Fit) -> float:
+        """How much more probable free runs are by a pair than by one of its effects [nats]."""
+        start = self._starts_with(self.model, single)
+        return self._gain(pair, self._reweighted_fit(self._rough_fit(start).model))
 
     def _starts_over_range(self, model: Fit, name: str) -> list[Fit]:
         """A vessel with one more effect of several sizes over its usual range."""

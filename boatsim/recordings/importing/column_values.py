@@ -31,7 +31,7 @@ def column_values(
     else:
         t, values = _term(work, name, f"columns.{name}", what)
     if isinstance(what, Allocation):
-        _remark_limits(work, f"{name}: the sum of its terms", values, what)
+        _remark_limits(work, f"{name}: the sum of its terms", "samples", values, what)
         return t, what.convert(values)
     return t, values
 
@@ -77,19 +77,18 @@ def _term(
         return signal.t, how.convert(signal.values)
     signal, how = signal_of(work, f"{key}.signal", what.signal)
     values = how.convert(signal.values)
-    _remark_limits(work, name, values, what)
+    _remark_limits(work, name, f"samples of {what.signal}", values, what)
     return signal.t, what.convert(values)
 
 
 def _remark_limits(
-    work: ConversionState, name: str, values: Array, what: Range | Curve | Allocation
+    work: ConversionState, name: str, samples: str, values: Array, what: Range | Curve | Allocation
 ) -> None:
     lowest, highest = what.unclipped_range
     if beyond := int(np.sum((values < lowest) | (values > highest))):
         work.remark(
-            f"{name}: {beyond} of {len(values)} samples are outside {lowest:g} to "
-            f"{highest:g} and are set to "
-            "the limit"
+            f"{name}: {beyond} of {len(values)} {samples} are outside {lowest:g} to {highest:g}, "
+            "where the map ends, and are set to the limit"
         )
 
 

@@ -130,8 +130,8 @@ def test_a_spring_and_the_drift_that_it_balances_are_found_together_or_not_at_al
     pair = search.most_probable_pair("ground_spring", OTHERS[:-1])
     assert pair is not None
     # the filter takes the slow force for a disturbance and finds twice these sizes
-    stiffness = pair.value("ground_spring", "stiffness_east")[0]
+    stiffness = pair.model.value("ground_spring", "stiffness_east")[0]
     assert stiffness == pytest.approx(STIFFNESS, rel=0.15)
-    assert pair.value("wave_drift", "sway")[0] == pytest.approx(DRIFT, rel=0.15)
+    assert pair.model.value("wave_drift", "sway")[0] == pytest.approx(DRIFT, rel=0.15)
     search.add_effects(OTHERS)
     assert not {"ground_spring", "wave_drift"} <= set(search.model.effects)

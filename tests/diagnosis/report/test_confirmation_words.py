@@ -140,8 +140,14 @@ def test_what_the_fit_to_simulations_changes_is_stated(in_patch: bool, expected:
 @pytest.mark.parametrize(
     ("names", "expected"),
     [
-        (["weak_reverse"], "weak reverse: simulations get better by it, but it is not shown to be"),
-        (["weak_reverse", "prop_walk"], "weak reverse and prop walk: simulations get better by"),
+        (
+            ["weak_reverse"],
+            "“meaning of weak_reverse”: simulations get better by it, but it is not",
+        ),
+        (
+            ["weak_reverse", "prop_walk"],
+            "“meaning of weak_reverse” and “meaning of prop_walk”: simulations get better by them",
+        ),
     ],
 )
 def test_effects_added_for_predictions_are_listed_and_not_called_causes(
@@ -159,7 +165,7 @@ def test_effects_added_for_predictions_are_listed_and_not_called_causes(
             }
         )
     findings = replace(findings, answer={**findings.answer, "added": added})
-    assert f"For predictions, the corrected vessel also has {expected}" in verdict_sentences(
+    assert f"For predictions, the corrected vessel also contains {expected}" in verdict_sentences(
         findings.answer
     )
     sections = report_sections(findings)
@@ -175,11 +181,13 @@ def test_an_added_effect_is_stated_with_its_group_and_its_bound() -> None:
         "name": "camera_scale@5 March",
         "group": "5 March",
         "kind": "measurement",
-        "words": "the positions are scaled",
+        "words": "in group 5 March, the positions are scaled (not physics)",
         "parameters": {"x_fraction": {"value": -0.4, "sd": 0.02, "unit": "", "at_bound": True}},
     }
     answer = planar().answer | {"added": [added]}
-    expected = "camera scale in group 5 March (at the bound of its range): simulations get better"
+    expected = (
+        "“in group 5 March, the positions are scaled” (at the bound of its range): simulations"
+    )
     assert expected in verdict_sentences(answer)
 
 
