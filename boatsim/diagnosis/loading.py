@@ -13,6 +13,7 @@ from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.order_signs import restore_order_signs
+from boatsim.diagnosis.checks.silent_poses import refuse_silent_poses
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
 from boatsim.files import Value
@@ -109,6 +110,7 @@ def load_recordings(
     for recording, own, name in zip(opened, own_vessels, names, strict=True):
         vessel = widen_channel_ranges(own, opened)
         by_path[recording.path] = vessel
+        refuse_silent_poses(recording, vessel)
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
         cleaned.append(replace(clean, name=name))

@@ -15,17 +15,10 @@ from boatsim.errors import BadInput, unknown_name_message
 from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import first_invalid_fact
 from boatsim.physics.groups import IN_GROUP
-from boatsim.physics.signals import AXES
+from boatsim.physics.signals import AXES, NOISE
 from boatsim.recordings.conversion import Curve, Range, conversion_of
 
 T = TypeVar("T")
-NOISE = (
-    "position_sd_m",
-    "heading_sd_rad",
-    "yaw_rate_sd_radps",
-    "roll_sd_rad",
-    "roll_rate_sd_radps",
-)
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "latency", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
 KEYS = ("vessel", "load", "group", "scale", "use", "clock", *TABLES, "runs")
@@ -392,7 +385,7 @@ class _Reader:
         )
         if mistakes:
             raise BadInput(join_mistakes(mistakes, self.file))
-        for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
+        for table, allowed in (("noise", tuple(NOISE)), ("ambient", AMBIENT)):
             for key in self.read_table(table):
                 if key not in allowed:
                     unknown.append(_with_hint(f"{table}.{key}", allowed))

@@ -14,6 +14,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from math import atan2
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tomlkit
@@ -58,23 +59,9 @@ RAW_LOGS = {
     "blue_unshifted": ("blue.commands.csv", "blue.pose.csv"),
     "control_M0": ("control_M0.drone_control.csv", "control_M0.optitrack_drone_pose.csv"),
 }
-# lines of the proposed maps that the owner has to complete: table -> key -> value
+# what the owner of the raw logs corrects in the proposed maps: axes of the camera, names of fans
 AXES = {"x_m": "pose.position.x", "y_m": "-pose.position.y", "psi_rad": "-pose.orientation.yaw"}
 COMMANDS = {f"fan_{fan}_share": f"motor_{fan[0]}_{fan[1]}" for fan in FANS}
-COMPLETED: dict[str, dict[str, dict[str, object]]] = {
-    "blue_unshifted": {
-        "begins": {"blue.pose.csv": -0.441603},  # [s] by the first stamps
-        "columns": AXES | COMMANDS,
-    },
-    "control_M0": {
-        "time": {
-            f"{name}.csv": f"{name}.log_time_ns * ns"
-            for name in ("control_M0.drone_control", "control_M0.optitrack_drone_pose")
-        },
-        "begins": {"control_M0.optitrack_drone_pose.csv": 0.003386},  # [s] by the logger's times
-        "columns": AXES | COMMANDS,
-    },
-}
 # floats on an air table, recorded by motion capture; each craft was weighed
 FACTS = {
     "no_water": True,
@@ -192,7 +179,8 @@ def copy_columns(source: Path, target: Path) -> None:
 def import_published(run: str, folder: Path, vessel: Path) -> Path:
     """Import a run as published by the map that `boatsim import --propose` writes.
 
-    For the raw logs the lines of `COMPLETED` take the place of the proposed ones.
+    For the raw logs the owner corrects columns of the map. What the import says about times that
+    do not agree, or about repairs, is printed.
 
     Args:
         run: Name of the run.
@@ -205,18 +193,17 @@ def import_published(run: str, folder: Path, vessel: Path) -> Path:
     names = RAW_LOGS.get(run, (f"{run}.csv",))
     logs = [SOURCE / "runs" / name for name in names]
     map_file, out = folder / f"{run}.map.toml", folder / f"{run}.csv"
+    notes = StringIO()
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         import_log(logs, None, None, map_file, str(vessel), ())
-        text = tomlkit.parse(map_file.read_text(encoding="utf-8"))
-        for table, lines in COMPLETED.get(run, {}).items():
-            place = text
-            if table:
-                text.pop(table, None)
-                place = text.setdefault(table, tomlkit.table())
-            for key, value in lines.items():
-                place[key] = value
-        map_file.write_text(tomlkit.dumps(text), encoding="utf-8")
+    text = tomlkit.parse(map_file.read_text(encoding="utf-8"))
+    columns: dict[str, Any] = text.setdefault("columns", {})
+    columns.update(AXES | COMMANDS if run in RAW_LOGS else {})
+    map_file.write_text(tomlkit.dumps(text), encoding="utf-8")
+    with redirect_stdout(StringIO()), redirect_stderr(notes):
         import_log(logs, out, map_file, None, str(vessel), ())
+    for remark in notes.getvalue().split("note: ")[1:]:
+        print(f"  {run}: {' '.join(remark.split())}")
     return out
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.cli.checking import print_checks
 from boatsim.diagnosis import loading, pipeline
 from boatsim.diagnosis.evaluation import compared_fits
 from boatsim.diagnosis.filter import MappedRecording
@@ -68,17 +69,30 @@ def copied_runs(form: str) -> list[Path]:
     if not files:
         print(f"{NAME}: skipped, there are no recordings in ../shared/recordings/{NAME}/{form}")
         raise SystemExit
-    folder = WORK / form
+    return _copied([file for file in files if file.stem not in LEFT_OUT], WORK / form)
+
+
+def _copied(files: Sequence[Path], folder: Path) -> list[Path]:
+    """Copies of recordings in a folder, next to notes that name the vessel."""
     folder.mkdir(parents=True, exist_ok=True)
     notes = NOTES.format(vessel=VESSEL.resolve(), begin=BEGIN)
     (folder / "recording.toml").write_text(notes, encoding="utf-8")
     copies = []
     for file in files:
-        if file.stem not in LEFT_OUT:
-            copy = folder / file.name
-            copy.write_bytes(file.read_bytes())
-            copies.append(copy)
+        copies.append(folder / file.name)
+        copies[-1].write_bytes(file.read_bytes())
     return copies
+
+
+def print_left_out(form: str) -> None:
+    """Print what the checks say about the runs that are left out.
+
+    Args:
+        form: "runs_clean".
+    """
+    files = [RECORDINGS / NAME / form / f"{name}.csv" for name in LEFT_OUT]
+    print("left out:")
+    print_checks(_copied(files, WORK / "left_out"), None, [])
 
 
 def split_runs(files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
@@ -136,6 +150,7 @@ def print_form(form: str, out: Path) -> None:
         out: Folder of the report.
     """
     files = copied_runs(form)
+    print_left_out(form)
     fitted, held_out = split_runs(files)
     print(f"held out: {', '.join(file.stem for file in held_out)}")
     start = time.process_time()

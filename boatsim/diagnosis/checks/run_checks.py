@@ -11,12 +11,14 @@ from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
 from boatsim.diagnosis.checks.drive_response import check_drive_response
 from boatsim.diagnosis.checks.excitation import check_excitation
 from boatsim.diagnosis.checks.finding import Finding, apply_corrections
+from boatsim.diagnosis.checks.held_commands import check_held_commands
 from boatsim.diagnosis.checks.holes import check_holes
 from boatsim.diagnosis.checks.interpolated_positions import check_interpolated_positions
 from boatsim.diagnosis.checks.position_jumps import check_position_jumps
 from boatsim.diagnosis.checks.position_unit import check_position_unit
 from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
 from boatsim.diagnosis.checks.saturation import check_saturation
+from boatsim.diagnosis.checks.silent_poses import check_silent_poses
 from boatsim.diagnosis.checks.time_unit import check_time_unit
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.errors import BadInput
@@ -31,7 +33,13 @@ TABLE_CHECKS = (
     check_angle_unit,
     check_command_unit,
 )
-RECORDING_CHECKS = (check_interpolated_positions, check_position_jumps, check_recorded_rates)
+RECORDING_CHECKS = (
+    check_silent_poses,
+    check_interpolated_positions,
+    check_position_jumps,
+    check_recorded_rates,
+    check_held_commands,
+)
 IDENTIFIABILITY_CHECKS = (check_holes, check_saturation, check_excitation, check_drive_response)
 
 

@@ -175,6 +175,51 @@ class ChecksConfig:
         "held over it says nothing about the motion behind it.",
         low=0.1,
     )
+    held_fewest: int = setting(
+        2,
+        "count",
+        "Commands between rest and limit that stay the same together where a log repeats the last "
+        "ones. A single one may rest by itself.",
+        low=1,
+    )
+    held_changes: int = setting(
+        200,
+        "count",
+        "Changes of commands from which the usual time between them is known to one per cent.",
+        low=10,
+    )
+    held_usual_share: float = setting(
+        0.99, "1", "Share of the times between changes that count as usual.", 0.0, 1.0
+    )
+    held_times: float = setting(
+        5.0,
+        "1",
+        "Usual times between changes from which commands are held. Two or three messages are "
+        "often lost.",
+        low=1.0,
+    )
+    held_leap: float = setting(
+        0.75,
+        "1",
+        "Share of the changes of commands that are smaller than the one behind a time over which "
+        "they are held.",
+        0.0,
+        1.0,
+    )
+    held_poses: int = setting(
+        5,
+        "count",
+        "New poses while commands stay the same that show that the log goes on.",
+        low=1,
+    )
+    held_rest: float = setting(
+        0.01,
+        "1",
+        "Share of the range of a command within which it is at rest or at a limit, where it may "
+        "stay the same.",
+        0.0,
+        0.5,
+    )
     hole_min_rows: int = setting(
         60,
         "count",

@@ -80,7 +80,7 @@ def time_column(columns: Mapping[str, Array], dates: Collection[str] = ()) -> st
             return name
     increasing = {}
     for name, values in columns.items():
-        if _hardly_decreases(values):
+        if hardly_decreases(values):
             increasing[name] = values
     for is_likely in (dates.__contains__, is_called_a_time, lambda n: _is_date(increasing[n])):
         names = list(filter(is_likely, increasing))
@@ -96,8 +96,8 @@ def _may_be_times(finite: Array) -> bool:
     return len(finite) >= MIN_TIMES and len(np.unique(finite)) > MIN_FORWARD * len(finite)
 
 
-def _hardly_decreases(values: Array) -> bool:
-    """Whether values (N,) increase as times do, except for a few steps back.
+def hardly_decreases(values: Array) -> bool:
+    """Return whether values (N,) increase as times do, except for a few steps back.
 
     Rows may be out of order, or a clock is set back, or begins again at midnight.
     """
@@ -144,24 +144,32 @@ def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> Tim
     Returns:
         The times; None if no pair of columns increases as times do.
     """
-    for fraction, of_fraction in columns.items():
+    pairs = list[tuple[str, str]]()  # seconds and fraction; first those of one name
+    for fraction, values in columns.items():
         words = _words(fraction)
-        unit = FRACTIONS.get(words[-1], 0.0)
-        known = of_fraction[np.isfinite(of_fraction)]
-        if not unit or not len(known) or known.min() < 0.0 or known.max() * unit >= 1.0:
+        if not _is_fraction(values, FRACTIONS.get(words[-1], 0.0)):
             continue
-        for seconds, values in columns.items():
-            is_pair = seconds == clock
+        for seconds in columns:
             own = _words(seconds)
             if own[-1] in WHOLE_SECONDS and own[:-1] == words[:-1]:
-                is_pair = True
-            whole = values[np.isfinite(values)]
-            if not is_pair or seconds == fraction or (whole != np.round(whole)).any():
-                continue
-            t = times_in_seconds(seconds, values) + unit * of_fraction
-            if _hardly_decreases(t):
-                return TimesOfColumns(t, (seconds, fraction))
+                pairs.insert(0, (seconds, fraction))
+            elif seconds == clock and seconds != fraction:
+                pairs.append((seconds, fraction))
+    for seconds, fraction in pairs:
+        whole = times_in_seconds(seconds, columns[seconds])
+        known = whole[np.isfinite(whole)]
+        if (known != np.round(known)).any():
+            continue
+        t = whole + FRACTIONS[_words(fraction)[-1]] * columns[fraction]
+        if hardly_decreases(t):
+            return TimesOfColumns(t, (seconds, fraction))
     return None
+
+
+def _is_fraction(values: Array, unit: float) -> bool:
+    """Whether values (N,) in a unit [s] are fractions of a second; a unit of 0 is none."""
+    known = values[np.isfinite(values)]
+    return bool(unit and len(known) and known.min() >= 0.0 and known.max() * unit < 1.0)
 
 
 def calendar_times(columns: Mapping[str, Array]) -> TimesOfColumns | None:

@@ -36,6 +36,7 @@ from boatsim.recordings.importing.coordinates import (
 )
 from boatsim.recordings.importing.dates import may_be_digits_of_date, seconds_from_dates
 from boatsim.recordings.importing.day_counts import day_count
+from boatsim.recordings.importing.late_rows import late_rows_remark
 from boatsim.recordings.importing.log import (
     MAX_SIGNALS,
     MAX_TEXT_BYTES,
@@ -104,6 +105,8 @@ def _log(
     clock = time_column(columns, dates)
     t, how = _times(columns, clock, units.get(clock or "", ""), clock in dates)
     has_times = clock is not None or bool(how)
+    if clock is not None and not how:
+        how = late_rows_remark(columns, t, (clock,))
     if not has_times:
         how += _constant_clock_remark(columns)
         how += ("no column holds times: rows are counted; the map can name it with `time`",)
@@ -161,7 +164,8 @@ def _times(
         parts = seconds_and_fraction(columns, clock)
     if parts is not None:
         named = f"{', '.join(parts.names[:-1])} and {parts.names[-1]}"
-        return parts.t, (f"the times are those of columns {named}",)
+        late = late_rows_remark(columns, parts.t, parts.names)
+        return parts.t, (f"the times are those of columns {named}", *late)
     if clock is None:
         return np.arange(len(next(iter(columns.values()), ())), dtype=float), ()
     if are_dates:

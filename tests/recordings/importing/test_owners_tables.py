@@ -84,6 +84,50 @@ def test_seconds_and_nanoseconds_of_two_columns_are_one_time(tmp_path):
     assert "no column holds times" not in remarks
 
 
+@pytest.mark.parametrize(
+    ("late", "said"),
+    [
+        (0.0, ""),
+        (
+            0.9,
+            "column log_time_ns is up to 0.9 s later than usual after the times used "
+            "(header.stamp.sec and header.stamp.nanosec), first 3.000 s after the log begins",
+        ),
+    ],
+)
+def test_messages_have_the_times_of_their_stamps_and_not_of_their_logging(tmp_path, late, said):
+    columns = columns_of_run()
+    del columns["time"]
+    t = RUN["t"]
+    whole = np.floor(t + 1e-4)
+    logged = t + 0.02
+    rows = slice(30, 39)  # the link was silent, and messages came together at its end
+    if late:
+        logged[rows] += late - (t[rows] - t[rows.start])
+    stamp = {
+        "log_time_ns": [f"{round(1e3 * time)}000000" for time in logged],
+        "header.stamp.nanosec": texts_of(np.round((t - whole) * 10.0) * 1e8, "{:.0f}"),
+        "header.stamp.sec": texts_of(whole, "{:.0f}"),
+    }
+    found, remarks = imported(tmp_path, lines_of(stamp | columns))
+    check_motion(found)
+    assert "the times are those of columns header.stamp.sec and header.stamp.nanosec" in remarks
+    assert said in remarks
+    assert ("later than usual" in remarks) == bool(said)
+
+
+def test_times_of_logging_that_are_used_are_compared_with_another_clock(tmp_path):
+    columns = columns_of_run()
+    late = RUN["t"].copy()
+    late[30:39] += 0.9 - (RUN["t"][30:39] - RUN["t"][30])
+    columns["time"] = texts_of(late, "{:.3f}")
+    columns["sensor_clock_s"] = texts_of(RUN["t"] - 3.2, "{:.3f}")
+    _, remarks = imported(tmp_path, lines_of(columns))
+    assert "the times used (time) are up to 0.9 s later than usual after column sensor_clock_s" in (
+        remarks
+    )
+
+
 def test_a_fraction_of_a_second_adds_to_a_column_of_whole_seconds(tmp_path):
     columns = columns_of_run()
     columns["time"] = texts_of(np.floor(RUN["t"] + 1e-6), "{:.0f}")
