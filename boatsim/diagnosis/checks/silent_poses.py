@@ -28,7 +28,7 @@ def check_silent_poses(recording: Recording, vessel: Vessel, _: ChecksConfig) ->
 
 
 def refuse_silent_poses(recording: Recording, vessel: Vessel) -> None:
-    """Refuse a recording that tells nothing about the motion of its vessel.
+    """Refuse a recording without any information on the motion of its vessel.
 
     Args:
         recording: A prepared recording.
@@ -47,7 +47,7 @@ def reason_without_poses(recording: Recording, vessel: Vessel) -> str:
 
     Poses are not measured if they and the velocities are empty in all rows. If all have one value
     in all rows, to the last digit, although a command or a measured input moves, the sensor failed
-    or the vessel was held; neither tells how it answers.
+    or the vessel was held; neither shows how it answers.
 
     Args:
         recording: A prepared recording.

@@ -179,7 +179,7 @@ class ChecksConfig:
         2,
         "count",
         "Commands between rest and limit that stay the same together where a log repeats the last "
-        "ones. A single one may rest by itself.",
+        "ones. A single one may rest.",
         low=1,
     )
     held_changes: int = setting(
