@@ -45,7 +45,9 @@ def check_held_commands(
     between = recording.t[changed] - recording.t[begins]
     leaps = np.sqrt(np.mean(steps[changed - 1] ** 2, axis=1))
     usual = float(np.quantile(between, config.held_usual_share))
-    longest = config.hole_duration * froude_time_scale(vessel)
+    if usual > config.held_rows * float(np.median(np.diff(recording.t))):
+        return []
+    longest = config.held_longest * froude_time_scale(vessel)
     held = (between > config.held_times * usual) & (between < longest)
     held &= leaps >= np.quantile(leaps, config.held_leap)
     moving = np.zeros(len(begins), dtype=np.int64)  # commands between rest and limit

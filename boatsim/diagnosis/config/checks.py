@@ -191,6 +191,20 @@ class ChecksConfig:
     held_usual_share: float = setting(
         0.99, "1", "Share of the times between changes that count as usual.", 0.0, 1.0
     )
+    held_rows: float = setting(
+        3.0,
+        "rows",
+        "Largest usual time between changes: commands that change less often are steps of a helm, "
+        "which may also stay the same for long.",
+        low=1.0,
+    )
+    held_longest: float = setting(
+        2.0,
+        "s",
+        "Longest time over which the commands of a hull of 1.2 m count as held. For longer a "
+        "helm may have kept them.",
+        low=0.01,
+    )
     held_times: float = setting(
         5.0,
         "1",

@@ -9,7 +9,7 @@ from boatsim.physics.vessel import load_vessel
 from boatsim.recordings.table import Recording
 
 T = np.arange(0.0, 120.0, 0.1)
-HELD = slice(400, 430)  # 3 s
+HELD = slice(400, 417)  # 1.7 s
 BOAT = load_vessel("blueboat")
 
 
@@ -34,12 +34,20 @@ def with_rows(recording: Recording, value, *names: str) -> Recording:
 BOTH = ("thrust_port_N", "thrust_starboard_N")
 
 
-def test_commands_that_are_repeated_for_three_seconds_are_found_with_their_time() -> None:
+def test_commands_that_are_repeated_for_two_seconds_are_found_with_their_time() -> None:
     (finding,) = check_held_commands(with_rows(recorded(), None, *BOTH), BOAT, DEFAULT.checks)
     assert finding.name == "commands_held"
-    assert finding.spans == (pytest.approx((40.0, 43.0)),)
-    assert finding.remedy == "write into recording.toml: use = [[0, 40], [43, 119.9]]"
-    assert "for 3 s and then leap, while they change at least every 0.1 s" in finding.evidence
+    assert finding.spans == (pytest.approx((40.0, 41.7)),)
+    assert finding.remedy == "write into recording.toml: use = [[0, 40], [41.7, 119.9]]"
+    assert "for 1.7 s and then leap, while they change at least every 0.1 s" in finding.evidence
+
+
+def test_commands_that_stay_the_same_for_long_are_those_of_a_helm() -> None:
+    signals = dict(recorded().signals)
+    for name in BOTH:
+        signals[name] = signals[name].copy()
+        signals[name][400:500] = signals[name][400]
+    assert check_held_commands(Recording("run", T, signals), BOAT, DEFAULT.checks) == []
 
 
 @pytest.mark.parametrize(
