@@ -159,9 +159,13 @@ def _likeliest_delays(compared: FaultComparison, step: float) -> list[_Delays]:
 
 def _stride(compared: FaultComparison, step: float) -> float:
     """Distance of the delays that are compared first [s]."""
+    return max(step, _shortest_delay(compared))
+
+
+def _shortest_delay(compared: FaultComparison) -> float:
+    """Smallest delay that is reported [s]; smaller ones look like many other effects."""
     problem = compared.problem
-    shortest = problem.config.checks.late_min_delay
-    return max(step, shortest * froude_time_scale(problem.program.vessel))
+    return problem.config.checks.late_min_delay * froude_time_scale(problem.program.vessel)
 
 
 def _likelihoods_of_delays(
@@ -238,7 +242,8 @@ def _findings(compared: FaultComparison, suspects: Sequence[_Delays], step: floa
     if not refined:
         return []
     best = max(refined, key=lambda each: each.lead(lead))
-    if best.lead(lead) - unchanged < lead:
+    is_short = max(best.seconds) < _shortest_delay(compared)
+    if is_short or best.lead(lead) - unchanged < lead:
         return []
     program = compared.program_with_rivals(RIVALS)
     enough = best.value + compared.required_gain

@@ -2,14 +2,20 @@
 vessels, also with physics that their models lack, are left in peace."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from shutil import copy
 from typing import Any
 
 import numpy as np
 import pytest
 from alike import long
 
+from boatsim.diagnosis.checks.late_sensors import check_late_sensors
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.loading import Request, load_recordings
 from boatsim.diagnosis.log_check import check_files
+from boatsim.diagnosis.question import set_up_estimation_problem
 from boatsim.newboat.particulars import Options, parse_particulars
 from boatsim.newboat.write import boat_files
 from boatsim.physics.base import Array
@@ -142,6 +148,21 @@ def test_late_sensors_are_found_with_the_line_that_mends_them(
     notes = tmp_path / "recording.toml"
     notes.write_text(notes.read_text() + "\n".join(entry["lines"]) + "\n")
     assert not faults(path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("smallest", "names"), [(0.1, ["late_positions"]), (0.4, [])])
+def test_a_delay_below_the_smallest_one_is_not_reported(
+    smallest: float, names: list[str], tmp_path: Path, mine: Path
+) -> None:
+    log = simulated(tmp_path, str(mine), GOALS["mine"])
+    late = dict.fromkeys(("x_m", "y_m"), 0.5)  # 0.4 s of a hull of 1.2 m are 0.63 s of this one
+    path = logged(log, tmp_path, str(mine), GOALS["mine"], late)
+    checks = replace(DEFAULT.checks, late_min_delay=smallest)
+    loaded = load_recordings(Request([path], hold_out=[Path(copy(path, tmp_path / "copy.csv"))]))
+    problem = set_up_estimation_problem(loaded, replace(DEFAULT, checks=checks)).problem
+    found = check_late_sensors(loaded.fitted, problem)
+    assert [finding.name for finding in found] == names
 
 
 def two_runs(folder: Path, delays: tuple[float, float]) -> list[Path]:
