@@ -1,9 +1,9 @@
-"""Which documented faults the diagnosis reports: `python -m validation.real.documented OUTPUT...`.
+"""Which documented faults are reported: `python -m validation.real.documented SET=OUTPUT...`.
 
-Each OUTPUT is a text file with what a command on a set printed, such as
-`python -m validation.real.holohover runs > holohover.txt`. The list of what the authors of the sets
-document as wrong or missing is `documented.toml`; it was written from the READMEs, not from
-answers. A fact counts as reported if one statement of the outputs of its set matches it:
+Each OUTPUT is a text file with what a command on a SET printed, such as that of
+`python -m validation.real.holohover runs > holohover.txt 2>&1`. `documented.toml` lists what the
+authors of the sets document as wrong or missing. It follows the READMEs; those who wrote it knew
+the answers. A fact counts as reported if one statement of the outputs of its set matches it:
 
 - stated: by an import, a check of the log, a named effect or a refined number,
 - in the corrected vessel: as an effect that held-out recordings confirm, or that was added for
@@ -15,7 +15,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 LIST = Path(__file__).with_name("documented.toml")
 # words of the sentences on effects that are no statement about causes
@@ -51,20 +51,20 @@ def statements_of(output: str) -> list[str]:
     """Return the statements of one output: its lines, the sentences of an answer one by one."""
     found = list[str]()
     for line in output.splitlines():
-        found += re.split(r"(?<=[.”)])\.? (?=[A-Z])", line.strip())
+        found += re.split(r"(?<=\.) (?=[A-Z])", line.strip())
     return found
 
 
-def how_reported(fact: Fact, outputs: Sequence[str]) -> str:
-    """Return how sure the outputs of the set of a fact report it, and no other set's.
+def how_reported(fact: Fact, outputs: Sequence[tuple[str, str]]) -> str:
+    """Return how sure the outputs of the set of a fact report it.
 
     Args:
         fact: The documented fact.
-        outputs: Printed outputs of commands on one set each.
+        outputs: Set and printed output of commands.
     """
     how = ABSENT
-    for output in outputs:
-        if fact.set not in output:
+    for name, output in outputs:
+        if name != fact.set:
             continue
         for statement in statements_of(output):
             if any(re.search(words, statement) for words in fact.words):
@@ -90,10 +90,13 @@ def print_report(facts: Sequence[Fact], reported: Mapping[Fact, str]) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print which documented facts the given outputs report."""
     parser = argparse.ArgumentParser(description="Documented faults that the diagnosis reports")
-    parser.add_argument("outputs", nargs="+", type=Path, help="text files with printed outputs")
-    given: Any = parser.parse_args(arguments)
-    outputs = [file.read_text(encoding="utf-8") for file in given.outputs]
-    facts = [fact for fact in documented_facts() if any(fact.set in text for text in outputs)]
+    parser.add_argument("outputs", nargs="+", metavar="SET=OUTPUT", help="text file of a set")
+    outputs = list[tuple[str, str]]()
+    for text in parser.parse_args(arguments).outputs:
+        name, _, file = text.partition("=")
+        outputs.append((name, Path(file).read_text(encoding="utf-8")))
+    sets = {name for name, _ in outputs}
+    facts = [fact for fact in documented_facts() if fact.set in sets]
     print_report(facts, {fact: how_reported(fact, outputs) for fact in facts})
 
 
