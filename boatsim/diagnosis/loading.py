@@ -13,7 +13,7 @@ from boatsim.diagnosis.checks.channel_ranges import widen_channel_ranges
 from boatsim.diagnosis.checks.clock_rate import check_clock_rate
 from boatsim.diagnosis.checks.finding import Finding
 from boatsim.diagnosis.checks.order_signs import restore_order_signs
-from boatsim.diagnosis.checks.silent_poses import refuse_silent_poses
+from boatsim.diagnosis.checks.silent_poses import without_silent_recordings
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.errors import BadInput
 from boatsim.files import Value
@@ -103,14 +103,17 @@ def load_recordings(
             first = len(opened)
     report("checking the log", 1.0)
     check_same_vessel(own_vessels)
+    kept, silent = without_silent_recordings(opened, own_vessels, names, first, config.checks)
+    opened, own_vessels = [opened[i] for i in kept], [own_vessels[i] for i in kept]
+    names = [names[i] for i in kept]
+    first = sum(i < first for i in kept)
     opened = restore_order_signs(opened, own_vessels[0], first)
     duration = data_cleaning.total_duration(opened)
-    findings, cleaned, remarks = list[Finding](), list[Recording](), list[str]()
+    findings, cleaned, remarks = list(silent), list[Recording](), list[str]()
     by_path: dict[Path | None, Vessel] = {}
     for recording, own, name in zip(opened, own_vessels, names, strict=True):
         vessel = widen_channel_ranges(own, opened)
         by_path[recording.path] = vessel
-        refuse_silent_poses(recording, vessel)
         clean = data_cleaning.clean_recording(recording, vessel, duration, config)
         findings += run_checks.check_recording(recording, clean, vessel, config.checks)
         cleaned.append(replace(clean, name=name))

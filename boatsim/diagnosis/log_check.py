@@ -16,6 +16,7 @@ from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.late_sensors import check_late_sensors
 from boatsim.diagnosis.checks.order_signs import restore_order_signs
 from boatsim.diagnosis.checks.per_cent_commands import check_per_cent_commands
+from boatsim.diagnosis.checks.silent_poses import check_silent_poses
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.loading import LoadedRecordings, check_same_vessel, vessel_of_recording_file
 from boatsim.diagnosis.question import set_up_estimation_problem
@@ -75,7 +76,7 @@ def check_files(
         findings += checked.findings
         usable += checked.parts
         if checked.parts:
-            prepared += file.parts
+            prepared += [part for part in file.parts if not _is_silent(part, vessels[file.path])]
     findings += check_clock_rate(prepared, DEFAULT.checks)
     if usable:
         try:
@@ -132,6 +133,9 @@ def _check_file(file: _Opened, vessel: Vessel) -> _Checked:
     duration = data_cleaning.total_duration(file.parts)
     findings, cleaned_parts = list(file.table), list[Recording]()
     for number, part in enumerate(file.parts, 1):
+        if _is_silent(part, vessel):
+            findings += check_silent_poses(part, vessel, DEFAULT.checks)
+            continue
         cleaned = data_cleaning.clean_recording(part, vessel, duration)
         findings += run_checks.check_recording(part, cleaned, vessel, DEFAULT.checks)
         findings += run_checks.check_identifiability(part, vessel, DEFAULT.checks)
@@ -142,6 +146,11 @@ def _check_file(file: _Opened, vessel: Vessel) -> _Checked:
     if file.table:
         return _Checked(tuple(findings))
     return _Checked(tuple(findings), tuple(cleaned_parts))
+
+
+def _is_silent(part: Recording, vessel: Vessel) -> bool:
+    """Whether a part of a file shows no motion, so that no other check can read it."""
+    return bool(check_silent_poses(part, vessel, DEFAULT.checks))
 
 
 def correction_hint(

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 LIST = Path(__file__).with_name("documented.toml")
+# words of lines that report nothing
+NO_REPORT = ("held out: ", "nothing wrong", "not used", "is excluded", "candidate effects tested")
 # words of the sentences on effects that are no statement about causes
 NOT_SURE = ("stand in for", "For predictions")
 STATED, CONTAINED, ABSENT = "stated", "in the corrected vessel", "not reported"
@@ -67,6 +69,8 @@ def how_reported(fact: Fact, outputs: Sequence[tuple[str, str]]) -> str:
         if name != fact.set:
             continue
         for statement in statements_of(output):
+            if any(words in statement for words in NO_REPORT):
+                continue
             if any(re.search(words, statement) for words in fact.words):
                 if not any(words in statement for words in NOT_SURE):
                     return STATED
@@ -91,9 +95,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Print which documented facts the given outputs report."""
     parser = argparse.ArgumentParser(description="Documented faults that the diagnosis reports")
     parser.add_argument("outputs", nargs="+", metavar="SET=OUTPUT", help="text file of a set")
+    known = list(dict.fromkeys(fact.set for fact in documented_facts()))
     outputs = list[tuple[str, str]]()
     for text in parser.parse_args(arguments).outputs:
         name, _, file = text.partition("=")
+        if name not in known or not file:
+            parser.error(f"{text}: allowed is SET=OUTPUT with a set of {', '.join(known)}")
         outputs.append((name, Path(file).read_text(encoding="utf-8")))
     sets = {name for name, _ in outputs}
     facts = [fact for fact in documented_facts() if fact.set in sets]

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
+from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -16,10 +17,12 @@ def check_held_commands(
 ) -> list[Finding]:
     """Find times over which all commands stay exactly the same, although they change elsewhere.
 
-    Commands that a helm or an automatic controller gives continuously change from row to row. Where
-    their link to the logger is silent, the log holds the last ones, while poses go on. Two signs
-    are needed: the times are several times longer than nearly all others between changes, and the
-    commands leap behind them. Commands at rest or at their limits may stay the same for any time.
+    Commands that an automatic controller gives continuously change in nearly every row. Where their
+    link to the logger is silent, the log holds the last ones, while poses go on. Such a time is
+    several times longer than nearly all others between changes. Two or more commands change in most
+    rows before it and are neither at rest nor at a limit in it; two or more leap at its end and
+    change in most rows behind it. A pause or a step of a planned experiment has one of these signs,
+    but not all.
 
     Args:
         recording: A prepared recording.
@@ -33,36 +36,55 @@ def check_held_commands(
     if len(names) < config.held_fewest:
         return []
     values = np.stack([recording[name] for name in names], axis=1)
-    span = np.ptp(values, axis=0)
-    if not np.isfinite(values).all() or not (span > 0.0).any():
+    complete = np.isfinite(values).all(axis=1)
+    if complete.sum() < config.held_changes:
         return []
+    t, values = recording.t[complete], values[complete]
+    span = np.ptp(values, axis=0)
     steps = np.abs(np.diff(values, axis=0)) / np.where(span > 0.0, span, 1.0)
     changed = np.flatnonzero(steps.max(axis=1) > 0.0) + 1
     if len(changed) < config.held_changes:
         return []
     # from these rows the commands stay the same up to the next change
     begins = np.append(0, changed[:-1])
-    between = recording.t[changed] - recording.t[begins]
-    leaps = np.sqrt(np.mean(steps[changed - 1] ** 2, axis=1))
+    between = t[changed] - t[begins]
     usual = float(np.quantile(between, config.held_usual_share))
-    if usual > config.held_rows * float(np.median(np.diff(recording.t))):
-        return []
     longest = config.held_longest * froude_time_scale(vessel)
+    leaps = np.sqrt(np.mean(steps[changed - 1] ** 2, axis=1))
     held = (between > config.held_times * usual) & (between < longest)
-    held &= leaps >= np.quantile(leaps, config.held_leap)
-    moving = np.zeros(len(begins), dtype=np.int64)  # commands between rest and limit
-    for c, name in enumerate(names):
-        levels = (vessel.commands[name].neutral, values[:, c].min(), values[:, c].max())
-        near = config.held_rest * span[c]
-        moving += np.abs(values[begins, c, None] - levels).min(axis=1) > near
-    held &= moving >= config.held_fewest
-    new = np.cumsum(_has_new_pose(recording))
-    held &= new[changed - 1] - new[begins] >= config.held_poses
-    if not held.any():
+    held &= leaps > np.quantile(leaps, config.held_leap)
+    new_poses = np.cumsum(_has_new_pose(recording)[complete])
+    held &= new_poses[changed - 1] - new_poses[begins] >= config.held_poses
+    limits = [_rest_and_limits(values[:, c], vessel, name) for c, name in enumerate(names)]
+    spans = list[tuple[float, float]]()
+    for i in np.flatnonzero(held).tolist():
+        begin, end = int(begins[i]), int(changed[i])
+        before = _share_of_changes(steps[:begin], config.held_poses, last=True)
+        after = _share_of_changes(steps[end:], config.held_poses, last=False)
+        moving = before > config.held_moving
+        for c, levels in enumerate(limits):
+            near = config.held_rest * span[c]
+            moving[c] &= bool(np.abs(values[begin, c] - levels).min() > near)
+        fewest = min(moving.sum(), (after > config.held_moving).sum())
+        if fewest >= config.held_fewest:
+            spans.append((float(t[begin]), float(t[end])))
+    if not spans:
         return []
-    t = recording.t
-    spans = tuple(zip(t[begins[held]].tolist(), t[changed[held]].tolist(), strict=True))
-    return [_finding(recording, spans, usual, config)]
+    return [_finding(tuple(spans))]
+
+
+def _rest_and_limits(values: Array, vessel: Vessel, name: str) -> Array:
+    """Values at which a command may stay the same: rest, limits, and the ends of its range."""
+    command = vessel.commands[name]
+    return np.array([command.neutral, command.low, command.high, values.min(), values.max()])
+
+
+def _share_of_changes(steps: Array, rows: int, *, last: bool) -> Array:
+    """Share (C,) of the first or last steps (N, C) in which each command changes."""
+    near = steps[-rows:] if last else steps[:rows]
+    if not len(near):
+        return np.zeros(steps.shape[1])
+    return np.asarray(np.mean(near > 0.0, axis=0))
 
 
 def _has_new_pose(recording: Recording) -> NDArray[np.bool_]:
@@ -75,25 +97,15 @@ def _has_new_pose(recording: Recording) -> NDArray[np.bool_]:
     return found
 
 
-def _finding(
-    recording: Recording,
-    spans: tuple[tuple[float, float], ...],
-    usual: float,
-    config: ChecksConfig,
-) -> Finding:
-    """The finding of intervals [s] in which commands are held, with the usual time between two."""
+def _finding(spans: tuple[tuple[float, float], ...]) -> Finding:
+    """The finding of intervals [s] in which commands are held."""
     lengths = ", ".join(f"{end - begin:.3g} s" for begin, end in spans[:MAX_LISTED])
-    begins = [recording.t[0], *(end for _, end in spans)]
-    ends = [*(begin for begin, _ in spans), recording.t[-1]]
-    parts = list[str]()
-    for begin, end in zip(begins, ends, strict=True):
-        if end - begin > config.held_times * usual:
-            parts.append(f"[{begin:g}, {end:g}]")
     return Finding(
         "commands_held",
-        f"all commands stay exactly the same for {lengths} and then leap, while they change at "
-        f"least every {usual:.2g} s elsewhere: no commands arrived, and the last ones are repeated",
+        f"all commands stay exactly the same for {lengths} and then leap, while they change in "
+        "nearly every row before and behind: no commands arrived, and the last ones are repeated",
         probability=0.9,
         spans=spans,
-        remedy=f"write into recording.toml: use = [{', '.join(parts)}]",
+        remedy="the commands of these times are unknown: leave the times out (`use` in "
+        "recording.toml), or log each command with its own time",
     )

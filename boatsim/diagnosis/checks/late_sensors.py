@@ -242,8 +242,8 @@ def _findings(compared: FaultComparison, suspects: Sequence[_Delays], step: floa
     if not refined:
         return []
     best = max(refined, key=lambda each: each.lead(lead))
-    is_short = max(best.seconds) < _shortest_delay(compared)
-    if is_short or best.lead(lead) - unchanged < lead:
+    least = _shortest_delay(compared) - 0.5 * step  # delays are whole steps
+    if max(best.seconds) < least or best.lead(lead) - unchanged < lead:
         return []
     program = compared.program_with_rivals(RIVALS)
     enough = best.value + compared.required_gain
@@ -257,7 +257,7 @@ def _findings(compared: FaultComparison, suspects: Sequence[_Delays], step: floa
     found = []
     for members in _recordings_by_file(compared.recordings):
         first = members[0]
-        if best.seconds[first] > 0.0:
+        if best.seconds[first] >= least:
             run = compared.recordings[first].origin
             found.append(_finding(best, best.seconds[first], run, gain, compared.problem))
     return found

@@ -18,7 +18,6 @@ from boatsim.diagnosis.checks.position_jumps import check_position_jumps
 from boatsim.diagnosis.checks.position_unit import check_position_unit
 from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
 from boatsim.diagnosis.checks.saturation import check_saturation
-from boatsim.diagnosis.checks.silent_poses import check_silent_poses
 from boatsim.diagnosis.checks.time_unit import check_time_unit
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.errors import BadInput
@@ -34,7 +33,6 @@ TABLE_CHECKS = (
     check_command_unit,
 )
 RECORDING_CHECKS = (
-    check_silent_poses,
     check_interpolated_positions,
     check_position_jumps,
     check_recorded_rates,

@@ -191,13 +191,6 @@ class ChecksConfig:
     held_usual_share: float = setting(
         0.99, "1", "Share of the times between changes that count as usual.", 0.0, 1.0
     )
-    held_rows: float = setting(
-        3.0,
-        "rows",
-        "Largest usual time between changes: commands that change less often are steps of a helm, "
-        "which may also stay the same for long.",
-        low=1.0,
-    )
     held_longest: float = setting(
         2.0,
         "s",
@@ -223,8 +216,12 @@ class ChecksConfig:
     held_poses: int = setting(
         5,
         "count",
-        "New poses while commands stay the same that show that the log goes on.",
+        "New poses while commands stay the same that show that the log goes on, and rows before "
+        "and behind in which commands must change.",
         low=1,
+    )
+    held_moving: float = setting(
+        0.5, "1", "Share of these rows in which a command changes.", 0.0, 1.0
     )
     held_rest: float = setting(
         0.01,
@@ -233,6 +230,13 @@ class ChecksConfig:
         "stay the same.",
         0.0,
         0.5,
+    )
+    silent_input: float = setting(
+        0.05,
+        "1",
+        "Share of its range by which a command must move to show that a recording of poses without "
+        "any change is no rest.",
+        low=0.0,
     )
     hole_min_rows: int = setting(
         60,

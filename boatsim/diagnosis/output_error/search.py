@@ -186,15 +186,26 @@ class OutputErrorSearch:
         if gain < least or self._held_out_gain(pair) <= 0.0 or self.harms(pair):
             return None
         second = pair.effects[-1]
-        gains = {first: self._gain_over(second, pair), second: self._gain_over(first, pair)}
+        gains = {
+            first: self._gain_over(self._starts_with(base, second), pair),
+            second: self._gain_over(self._starts_over_range(base, first), pair),
+        }
         if min(gains.values()) < self.config.effect_gain:
             return None
         return BalancedPair(pair, gains)
 
-    def _gain_over(self, single: str, pair: Fit) -> float:
-        """How much more probable free runs are by a pair than by one of its effects [nats]."""
-        start = self._starts_with(self.model, single)
-        return self._gain(pair, self._reweighted_fit(self._rough_fit(start).model))
+    def _gain_over(self, starts: Sequence[Fit], pair: Fit) -> float:
+        """How much more probable free runs are by a pair than by one of its effects [nats].
+
+        Args:
+            starts: Vessels with that effect, from which its fit starts.
+            pair: The vessel with the pair.
+        """
+        gains = list[float]()
+        for start in starts:
+            alone = self._reweighted_fit(self._rough_fit([start]).model)
+            gains.append(self._gain(pair, alone))
+        return min(gains)
 
     def _starts_over_range(self, model: Fit, name: str) -> list[Fit]:
         """A vessel with one more effect of several sizes over its usual range."""

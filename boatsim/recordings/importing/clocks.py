@@ -144,7 +144,7 @@ def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> Tim
     Returns:
         The times; None if no pair of columns increases as times do.
     """
-    pairs = list[tuple[str, str]]()  # seconds and fraction; first those of one name
+    of_one_name, of_clock = list[tuple[str, str]](), list[tuple[str, str]]()
     for fraction, values in columns.items():
         words = _words(fraction)
         if not _is_fraction(values, FRACTIONS.get(words[-1], 0.0)):
@@ -152,10 +152,10 @@ def seconds_and_fraction(columns: Mapping[str, Array], clock: str | None) -> Tim
         for seconds in columns:
             own = _words(seconds)
             if own[-1] in WHOLE_SECONDS and own[:-1] == words[:-1]:
-                pairs.insert(0, (seconds, fraction))
-            elif seconds == clock and seconds != fraction:
-                pairs.append((seconds, fraction))
-    for seconds, fraction in pairs:
+                of_one_name.append((seconds, fraction))
+            elif seconds == clock != fraction and set(words[:-1]) <= TIME_WORDS | set(own):
+                of_clock.append((seconds, fraction))
+    for seconds, fraction in (*of_one_name, *of_clock):
         whole = times_in_seconds(seconds, columns[seconds])
         known = whole[np.isfinite(whole)]
         if (known != np.round(known)).any():

@@ -116,6 +116,54 @@ def test_messages_have_the_times_of_their_stamps_and_not_of_their_logging(tmp_pa
     assert ("later than usual" in remarks) == bool(said)
 
 
+def test_the_first_of_two_stamps_of_a_table_is_that_of_the_row(tmp_path):
+    columns = columns_of_run()
+    del columns["time"]
+    stamps = {}
+    for name, late in (("header", 0.0), ("gps.header", 0.3)):
+        t = RUN["t"] - late
+        whole = np.floor(t + 1e-4)
+        stamps[f"{name}.stamp.sec"] = texts_of(whole, "{:.0f}")
+        stamps[f"{name}.stamp.nanosec"] = texts_of(np.round((t - whole) * 10.0) * 1e8, "{:.0f}")
+    found, remarks = imported(tmp_path, lines_of(stamps | columns))
+    check_motion(found)
+    assert "the times are those of columns header.stamp.sec and header.stamp.nanosec" in remarks
+
+
+def test_a_duration_in_milliseconds_is_no_fraction_of_the_time(tmp_path):
+    ping = 30.0 + 800.0 * np.random.default_rng(1).random(COUNT)
+    rows = [f"{i},{i},{value:.0f}" for i, value in enumerate(ping)]
+    file = tmp_path / "log.csv"
+    file.write_text("\n".join(["time,heading_deg,ping_ms", *rows]))
+    log = read(file)
+    assert log.signals["heading_deg"].t == pytest.approx(np.arange(COUNT, dtype=float))
+
+
+@pytest.mark.parametrize(
+    ("other", "values"),
+    [
+        ("board_millis", 1000.0 * np.round(1.0004 * (RUN["t"] - RUN["t"][0]), 3)),  # runs fast
+        ("pc_time", RUN["t"] + np.where(RUN["t"] > RUN["t"][60], 3.0, 0.0)),  # set forward once
+        ("gps_time", np.where(RUN["t"] < RUN["t"][30], 0.0, RUN["t"] + 0.02)),  # 0 before a fix
+        ("utc_time", np.floor(RUN["t"])),  # whole seconds
+    ],
+)
+def test_clocks_that_drift_or_begin_late_are_no_late_messages(tmp_path, other, values):
+    columns = columns_of_run() | {other: texts_of(values, "{:.3f}")}
+    found, remarks = imported(tmp_path, lines_of(columns))
+    check_motion(found)
+    assert "later than usual" not in remarks
+
+
+def test_a_row_without_a_time_is_left_out_also_beside_a_second_clock(tmp_path):
+    columns = columns_of_run()
+    columns["sensor_clock_s"] = texts_of(RUN["t"] - 3.2, "{:.3f}")
+    columns["time"][100] = ""
+    found, remarks = imported(tmp_path, lines_of(columns))
+    assert len(found.t) >= COUNT - 2
+    assert "later than usual" not in remarks
+
+
 def test_times_of_logging_that_are_used_are_compared_with_another_clock(tmp_path):
     columns = columns_of_run()
     late = RUN["t"].copy()
