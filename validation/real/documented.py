@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 LIST = Path(__file__).with_name("documented.toml")
 # words of lines that report nothing
-NO_REPORT = ("held out: ", "nothing wrong", "not used", "is excluded", "candidate effects tested")
+NO_REPORT = ("held out: ", "nothing wrong", "columns not used", "candidate effects tested", "s CPU")
 # words of the sentences on effects that are no statement about causes
 NOT_SURE = ("stand in for", "For predictions")
 STATED, CONTAINED, ABSENT = "stated", "in the corrected vessel", "not reported"
