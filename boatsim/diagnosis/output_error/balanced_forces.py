@@ -7,7 +7,7 @@ force, so that the pair gains little of the evidence that faster forces explain.
 over whole recordings take part in the decision.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from boatsim.diagnosis.candidates import name_without_prefixes
@@ -76,9 +76,11 @@ def add_balanced_forces(
         both = _fit_of_filter(problem, best, pair)
         if both.evidence <= best.evidence + 2.0 * required:
             continue
-        without = _fits_without(problem, both, pair.gains)
+        without = {
+            name: converge(problem, remove_effect(problem, both, name)) for name in pair.gains
+        }
         if _is_each_needed(both, without, pair, required):
-            without |= _fits_without(problem, both, best.effects)
+            without |= _fits_without_others(problem, ranking, both, pair)
             named = _statistics(problem, both, without, ranking.named)
             found = with_further_effects(problem, ranking, both, named, without)
             return replace(found, balanced=tuple(pair.gains))
@@ -122,16 +124,32 @@ def _fit_of_filter(problem: Problem, best: Fit, pair: BalancedPair) -> Fit:
 
     It starts from the sizes of the pair in the free runs.
     """
-    values, start = pair.model.values(), best
+    return converge(problem, _with_pair(problem, best, pair, pair.model))
+
+
+def _with_pair(problem: Problem, start: Fit, pair: BalancedPair, sizes: Fit) -> Fit:
+    """A fit with the effects of a pair in addition, which have the sizes of another fit."""
+    values = sizes.values()
     for name in pair.gains:
-        sizes = {parameter: x for (effect, parameter), x in values.items() if effect == name}
-        start = add_effect(problem, start, name, sizes)
-    return converge(problem, start)
+        own = {parameter: x for (effect, parameter), x in values.items() if effect == name}
+        start = add_effect(problem, start, name, own)
+    return start
 
 
-def _fits_without(problem: Problem, both: Fit, names: Iterable[str]) -> dict[str, Fit]:
-    """Converged fits without one of some effects of a fit, by its name."""
-    return {name: converge(problem, remove_effect(problem, both, name)) for name in names}
+def _fits_without_others(
+    problem: Problem, ranking: Ranking, both: Fit, pair: BalancedPair
+) -> dict[str, Fit]:
+    """Converged fits with a pair, and without one of the effects selected before, by its name.
+
+    They start from the fits without that effect which the ranking has.
+    """
+    found = {}
+    for name in ranking.best.effects:
+        start = remove_effect(problem, both, name)
+        if name in ranking.without:
+            start = _with_pair(problem, ranking.without[name], pair, both)
+        found[name] = converge(problem, start)
+    return found
 
 
 def _is_each_needed(
