@@ -8,7 +8,7 @@ from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time_scale
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE
-from boatsim.physics.vessel import Vessel
+from boatsim.physics.vessel import CommandChannel, Vessel
 from boatsim.recordings.table import Recording
 
 
@@ -55,17 +55,15 @@ def check_held_commands(
     held &= leaps > np.quantile(leaps, config.held_leap)
     new_poses = np.cumsum(_has_new_pose(recording)[complete])
     held &= new_poses[changed - 1] - new_poses[begins] >= config.held_poses
-    limits = [_rest_and_limits(values[:, c], vessel, name) for c, name in enumerate(names)]
+    may_rest = np.empty(values.shape, dtype=np.bool_)
+    for c, name in enumerate(names):
+        may_rest[:, c] = _may_rest(values[:, c], vessel.commands[name], config)
     spans = list[tuple[float, float]]()
-    for i in np.flatnonzero(held).tolist():
-        begin, end = int(begins[i]), int(changed[i])
+    for begin, end in zip(begins[held].tolist(), changed[held].tolist(), strict=True):
         before = _share_of_changes(steps[:begin], config.held_poses, last=True)
         after = _share_of_changes(steps[end:], config.held_poses, last=False)
-        moving = before > config.held_moving
-        for c, levels in enumerate(limits):
-            near = config.held_rest * span[c]
-            moving[c] &= bool(np.abs(values[begin, c] - levels).min() > near)
-        fewest = min(moving.sum(), (after > config.held_moving).sum())
+        moved = (before > config.held_moving) & ~may_rest[begin]
+        fewest = min(moved.sum(), (after > config.held_moving).sum())
         if fewest >= config.held_fewest:
             spans.append((float(t[begin]), float(t[end])))
     if not spans:
@@ -73,10 +71,11 @@ def check_held_commands(
     return [_finding(tuple(spans))]
 
 
-def _rest_and_limits(values: Array, vessel: Vessel, name: str) -> Array:
-    """Values at which a command may stay the same: rest, limits, and the ends of its range."""
-    command = vessel.commands[name]
-    return np.array([command.neutral, command.low, command.high, values.min(), values.max()])
+def _may_rest(values: Array, command: CommandChannel, config: ChecksConfig) -> NDArray[np.bool_]:
+    """Whether values (N,) of a command are at rest, at a limit or at an end of their range."""
+    levels = (command.neutral, command.low, command.high, values.min(), values.max())
+    near = config.held_rest * float(np.ptp(values))
+    return np.asarray(np.abs(values[:, None] - np.array(levels)).min(axis=1) <= near)
 
 
 def _share_of_changes(steps: Array, rows: int, *, last: bool) -> Array:
