@@ -242,7 +242,7 @@ def _findings(compared: FaultComparison, suspects: Sequence[_Delays], step: floa
     if not refined:
         return []
     best = max(refined, key=lambda each: each.lead(lead))
-    least = _shortest_delay(compared) - 0.5 * step  # delays are whole steps
+    least = _shortest_delay(compared) - 0.01 * step  # steps of recorded times are rounded
     if max(best.seconds) < least or best.lead(lead) - unchanged < lead:
         return []
     program = compared.program_with_rivals(RIVALS)
