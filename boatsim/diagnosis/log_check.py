@@ -133,8 +133,9 @@ def _check_file(file: _Opened, vessel: Vessel) -> _Checked:
     duration = data_cleaning.total_duration(file.parts)
     findings, cleaned_parts = list(file.table), list[Recording]()
     for number, part in enumerate(file.parts, 1):
-        if _is_silent(part, vessel):
-            findings += check_silent_poses(part, vessel, DEFAULT.checks)
+        silent = check_silent_poses(part, vessel, DEFAULT.checks)
+        if silent:  # the other checks need poses
+            findings += silent
             continue
         cleaned = data_cleaning.clean_recording(part, vessel, duration)
         findings += run_checks.check_recording(part, cleaned, vessel, DEFAULT.checks)
@@ -149,7 +150,7 @@ def _check_file(file: _Opened, vessel: Vessel) -> _Checked:
 
 
 def _is_silent(part: Recording, vessel: Vessel) -> bool:
-    """Whether a part of a file shows no motion, so that no other check can read it."""
+    """Whether a part of a file shows no motion."""
     return bool(check_silent_poses(part, vessel, DEFAULT.checks))
 
 
